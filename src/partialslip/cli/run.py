@@ -124,7 +124,7 @@ def _run(options: argparse.Namespace) -> int:
                 save = Path(options.save)
                 files += write_files(save.parent, {save.name: _state(outcome).save})
             files += write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
-    paid = [_paid(price, budget, outcome, priced_at)] if price else []
+    paid = _paid(price, budget, outcome, priced_at) if price else []
     return print_outcome(outcome, options, files, paid, elsewhere)
 
 
@@ -180,8 +180,8 @@ def _finest(options: argparse.Namespace) -> float:
     return math.inf if any(each.startswith("fem.accuracy") for each in options.overrides) else FINEST
 
 
-def _paid(price: "Price", budget: float | None, outcome: "Run", priced_at: float) -> str:
-    """Return a line with the predicted CPU seconds or the ``budget``, the actual seconds, and what they have led to."""
+def _paid(price: "Price", budget: float | None, outcome: "Run", priced_at: float) -> list[str]:
+    """Return lines with the predicted CPU seconds or the ``budget``, the actual seconds, and what they have led to."""
     taken = (
         price.start_s
         + time.process_time()
@@ -190,8 +190,8 @@ def _paid(price: "Price", budget: float | None, outcome: "Run", priced_at: float
     )
     fem = outcome.results.get("fem")
     known = max((fem.estimate[key] for key in ("a", "m", "n") if key in fem.estimate), default=0.0) if fem else 0.0
-    reached = f"; a, m and n known to {known:.1e} a" if known else ""
-    return f"{f'budget of {budget:g} s' if budget else price}; {taken:.2g} CPU s, actual{reached}"
+    reached = [f"a, m and n known to {known:.1e} a"] if known else []
+    return [f"{f'budget of {budget:g} s' if budget else price}; {taken:.2g} CPU s, actual", *reached]
 
 
 def _state(outcome: "Run") -> "State":
