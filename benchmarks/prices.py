@@ -1,9 +1,11 @@
-"""The price list of finite elements: fitted to random scenes, checked on others, and budgets that are kept.
+"""The price list of --accuracy, fitted to random runs and checked on others, and budgets beside default runs.
 
-python benchmarks/prices.py fit LEDGER | check LEDGER | budgets LEDGER [SECONDS ...]
+python benchmarks/prices.py fit LEDGER [COUNT] | check LEDGER [COUNT]
 
-All measure what the ledger does not have yet; a stopped run goes on. ``fit`` writes the shipped price list anew.
-``check`` asks for accuracies, ``budgets`` for 2, 5 and 20 s: whole processes, from exec to exit, with their children.
+Scenes are drawn by seeds: Hertz and flat-rounded contacts, fully reversed loads, mean loads, varying P, finite bodies,
+unlike materials and bodies on a pin, CHOLMOD and SuperLU. ``fit`` writes the shipped price list anew. ``check`` runs
+each scene with ``--accuracy``, and then with the CPU seconds that this took as ``--budget``. All runs are whole
+processes, from exec to exit, with their children. A stopped run goes on.
 """
 
 import argparse
@@ -20,177 +22,139 @@ import numpy as np
 from accuracy import random_scene
 
 import partialslip
-from partialslip.batch.job import Job, Solved, solve_apart
-from partialslip.batch.ledger import Ledger, case_key
+from partialslip.batch.ledger import Ledger, case_key, scene_content
+from partialslip.scene.writing import scene_toml
 from partialslip.study.cost import prices
 
-# accuracies by order and factorisation
-LADDER = {
-    (6, "cholmod"): (1e-5, 1e-6, 1e-7, 1e-8, 1e-9),
-    (4, "cholmod"): (1e-2, 1e-4, 1e-5, 1e-6, 1e-7),
-    (4, "superlu"): (1e-3, 1e-5, 1e-7),
-    (3, "cholmod"): (1e-2, 1e-3, 1e-4),
-}
-KINDS = ("hertz", "flat-rounded", "tabulated")
-EACH = {"cholmod": 2, "superlu": 1}  # scenes of each kind
-FINE = 1e-6  # beyond that one scene of each kind
-BUDGETS = (2.0, 5.0, 20.0)
-CHECKED = range(500, 520)
+CLASSES = {"reversed": 7.5, "mean loads": 4.5, "varying P": 4.5, "finite": 3.5, "unlike": 3.5, "pivot": 3.0}  # digits
+PROFILES = ("hertz", "flat-rounded")
+FITTED, CHECKED = 0, 1000  # first seeds
 SHIPPED = Path(partialslip.__file__).parent / "study" / "cost" / "prices.json"
 RUN = [sys.executable, "-m", "partialslip", "run", "--force"]
+REFERENCE = ("hertz-shear", "--budget", "1e-3s")  # refused once it is priced: the start of a run, and an exit ...
+START = 0.88  # ... and the part of the start, measured
 
 
-def fitted() -> list[Job]:
-    """The cheapest first, so that a list can be fitted before all are measured."""
-    seeds: dict[str, list[int]] = {kind: [] for kind in KINDS}
-    for seed in range(400, 500):
-        seeds[msgspec.to_builtins(random_scene(seed, 1e-3))["profile"]["kind"]].append(seed)
-    found = []
-    for (order, factor), ladder in LADDER.items():
-        for asked in ladder:
-            for kind in KINDS:
-                for seed in seeds[kind][: EACH[factor] if asked >= FINE else 1]:
-                    data: dict[str, Any] = msgspec.to_builtins(random_scene(seed, asked))
-                    data["fem"] |= {"order": order, "factor": factor}
-                    found.append(Job(partialslip.parse_scene(data), ("exact", "fem"), {"seed": seed}))
-    return sorted(found, key=lambda case: -case.scene.fem.accuracy)
-
-
-def measured(ledger: Ledger, cases: list[Job]) -> list[Solved]:
-    for number, each in enumerate(cases):
-        print(f"{number} of {len(cases)}", end="\r", file=sys.stderr, flush=True)
-        if each.key not in ledger:
-            ledger.add(each.key, solve_apart(each))
-    return [ledger.read(each.key, Solved) for each in cases]
+def drawn(seed: int) -> partialslip.Scene:
+    """A random scene, class and profile in turn."""
+    random, kinds = np.random.default_rng([7, seed]), [*CLASSES]
+    kind, profile = kinds[seed % len(kinds)], PROFILES[seed // len(kinds) % 2]
+    asked = float(10 ** -random.uniform(2, CLASSES[kind]))
+    factor = "superlu" if random.random() < 0.25 else "cholmod"
+    candidates = (msgspec.to_builtins(random_scene(number, asked)) for number in range(1000 * (seed + 1), 1 << 40))
+    data: dict[str, Any] = next(each for each in candidates if each["profile"]["kind"] == profile)
+    load, a, f = data["load"], 1e-3, data["friction"]["f"]
+    P, Q, sigma = load["P"], load["Q"][1], load["sigma"][1]
+    if kind == "mean loads":
+        Q_mean, sigma_mean = random.uniform(-1, 1) * (0.95 * f * P - abs(Q)), random.uniform(-1, 1) * abs(sigma)
+        load |= {"Q": [Q_mean - Q, Q_mean + Q], "sigma": [sigma_mean - sigma, sigma_mean + sigma]}
+    elif kind == "varying P":
+        rises, least = random.random() < 0.5, min(max(0.5, abs(Q) / (0.9 * f * P)), 0.95)
+        load["P"] = [P * random.uniform(least, 0.98), P][:: 1 if rises else -1]
+    elif kind in ("finite", "pivot"):
+        upper = {"width": a * random.uniform(6, 16), "height": a * random.uniform(3, 8)}
+        upper["kind"] = str(random.choice(["pad", "block"]))
+        if kind == "pivot":
+            upper |= {"support": "pivot", "pivot_height": a * random.uniform(0, 0.3)}
+        data["bodies"] = {"upper": upper}
+        if random.random() < 0.5:
+            lower = {"width": a * random.uniform(12, 40), "height": a * random.uniform(4, 10), "support": "roller"}
+            data["bodies"]["lower"] = lower
+    elif kind == "unlike":
+        data["material"]["upper"] = {"E": data["material"]["E"] * random.uniform(1.5, 10), "nu": 0.3}
+    data["load"] = {key: value for key, value in load.items() if value is not None}
+    data |= {"name": f"prices-{seed}", "friction": {"f": f}, "fem": {"accuracy": asked, "factor": factor}}
+    return partialslip.parse_scene({key: value for key, value in data.items() if value is not None})
 
 
 def process(*options: str) -> tuple[float, int, str]:
-    """CPU seconds of ``partialslip run`` with these ``options``, exit code, and what it says of the price."""
+    """CPU seconds of ``partialslip run`` with these ``options``, exit code, and its last words."""
     with tempfile.TemporaryFile("w+") as text:
         child = subprocess.Popen([*RUN, *options], stdout=text, stderr=text)
         _, status, used = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
         text.seek(0)
-        lines = text.read().splitlines() or [""]
-    return used.ru_utime + used.ru_stime, child.returncode, lines[-1] if child.returncode == 2 else lines[-2]
+        words = " ".join(line for line in text.read().splitlines() if "CPU s" in line or child.returncode == 2)
+    return used.ru_utime + used.ru_stime, child.returncode, words
 
 
-def overheads(ledger: Ledger) -> dict[str, float]:
-    """Start and closing of a run, and the march: medians of three, as multiples of the start of a case's process."""
-    key = case_key({"overheads": 1})
+def key_of(scene: partialslip.Scene, what: str) -> str:
+    """Key of a run in the ledger."""
+    return case_key({"scene": scene_content(scene), "what": what})
+
+
+def taken(ledger: Ledger, scene: partialslip.Scene, what: str, seconds: float = 0.0) -> dict[str, Any]:
+    """CPU seconds of a run of ``scene`` with --accuracy or --budget of so many ``seconds`` (``what``), in the ledger or
+    measured: of the process, of the reference just before, and of the methods; exit code, words, estimates."""
+    key = key_of(scene, what)
     if key not in ledger:
-        found = []
+        start = 0.0 if seconds else START * process(*REFERENCE)[0]
+        value = f"{seconds:.3f}s" if seconds else f"{scene.fem.accuracy!r}"
         with tempfile.TemporaryDirectory() as folder:
-            for _ in range(3):
-                refused, _, _ = process("hertz-shear", "--budget", "1e-3s")
-                whole, _, _ = process("hertz-shear", "--accuracy", "1e-2", "--out", folder)
-                methods = partialslip.load_result(Path(folder) / "results.json").methods
-                work = sum(method.cost.cpu_s for method in methods.values())
-                process("hertz-shear", "--with", "march", "--out", folder)
-                march = partialslip.load_result(Path(folder) / "results.json").methods["march"].cost.cpu_s
-                apart = solve_apart(Job(partialslip.load_scene("hertz-shear"), ("exact",), {}))
-                start = apart.process.cpu_s - apart.run.methods["exact"].cost.cpu_s
-                found.append([refused / start, (whole - work - refused) / start, march / start])
-        medians = np.median(found, axis=0).tolist()
-        ledger.add(key, {"overheads": dict(zip(("start", "closing", "march"), medians, strict=True))})
-    result: dict[str, float] = ledger[key]["overheads"]
-    return result
-
-
-def fit(ledger: Ledger, _: list[float]) -> None:
-    extra = overheads(ledger)
-    entries = measured(ledger, fitted())
-    costs = [sum(method.cost.cpu_s for method in entry.run.methods.values()) for entry in entries]
-    start = float(np.median([entry.process.cpu_s - cost for entry, cost in zip(entries, costs, strict=True)]))
-    machine = ledger[fitted()[0].key]["made"]["machine"]
-    found = prices.fit(
-        entries,
-        {key: value * start for key, value in extra.items()},
-        f"{machine['processor']}, {machine['cores']} cores, {machine['system']}",
-    )
-    SHIPPED.write_text(prices.to_json(found), "utf-8")
-    print(json.dumps(msgspec.to_builtins(found), indent=1))
-
-
-def scenes(folder: Path) -> dict[str, str]:
-    """Shipped ones and random ones that the fit has not seen, by name."""
-    found = {name: name for name in partialslip.shipped_scenes()}
-    for seed in CHECKED:
-        scene = random_scene(seed, 2e-5)
-        found[scene.name] = str(folder / f"{scene.name}.toml")
-        Path(found[scene.name]).write_text(_toml(msgspec.to_builtins(scene)), "utf-8")
-    return found
-
-
-def _toml(data: dict[str, Any]) -> str:
-    """A scene's file; settings that are not given are left out."""
-    lines = [f"name = {json.dumps(data['name'])}"]
-    for table, values in data.items():
-        if isinstance(values, dict) and table in ("material", "profile", "friction", "load"):
-            given = {key: value for key, value in values.items() if value is not None and not isinstance(value, dict)}
-            lines += [f"[{table}]", *(f"{key} = {json.dumps(value)}" for key, value in given.items())]
-    return "\n".join(lines) + "\n"
-
-
-def taken(ledger: Ledger, name: str, file: str, *options: str) -> dict[str, Any]:
-    """CPU seconds, exit code and last words of a run, and what its results.json says."""
-    key = case_key({"scene": name, "options": options})
-    if key not in ledger:
-        with tempfile.TemporaryDirectory() as folder:
-            cpu, code, words = process(file, *options, "--out", folder)
-            record = Path(folder) / "results.json"
-            fem = json.loads(record.read_text("utf-8"))["methods"]["fem"] if record.exists() else {}
-        accuracy = fem.get("settings", {}).get("accuracy")
-        found = {"name": name, "options": options, "cpu_s": cpu, "code": code, "words": words, "accuracy": accuracy}
+            file, record = Path(folder) / "scene.toml", Path(folder) / "out" / "results.json"
+            file.write_text(scene_toml(scene), "utf-8")
+            cpu, code, words = process(str(file), f"--{what}", value, "--out", str(record.parent))
+            methods = json.loads(record.read_text("utf-8"))["methods"] if record.exists() else {}
+        found = {"value": value, "start_s": start, "cpu_s": cpu, "code": code, "words": words}
+        found["costs"] = {name: method["cost"]["cpu_s"] for name, method in methods.items()}
+        found["estimate"] = methods["fem"]["estimate"] if methods else {}
         ledger.add(key, found)
     return ledger[key]
 
 
-def check(ledger: Ledger, _: list[float]) -> None:
-    """Whole processes at accuracies from 1e-2 to 1e-8, beside what was predicted."""
-    ratios = []
-    with tempfile.TemporaryDirectory() as folder:
-        known = scenes(Path(folder))
-        for (name, file), asked in zip(known.items(), np.geomspace(1e-2, 1e-8, len(known)).tolist(), strict=True):
-            found = taken(ledger, name, file, "--accuracy", f"{asked:.1e}")
-            predicted = _predicted(found["words"])
-            ratios.append(found["cpu_s"] / predicted)
-            print(f"{name:22} {asked:.1e} predicted {predicted:6.2f} s, took {found['cpu_s']:6.2f} s, exit "
-                  f"{found['code']}, ratio {ratios[-1]:.2f}", flush=True)  # fmt: skip
-    within = sum(0.5 <= ratio <= 2 for ratio in ratios)
-    print(f"within a factor of 2 in {within} of {len(ratios)}, median ratio {np.median(ratios):.2f}")
+def fit(ledger: Ledger, count: int) -> None:
+    """Measure ``count`` scenes and write the price list."""
+    runs = []
+    for seed in range(FITTED, FITTED + count):
+        scene = drawn(seed)
+        found = taken(ledger, scene, "accuracy")
+        print(f"{seed:3} {prices.family(scene):40} {found['cpu_s']:6.2f} s", flush=True)
+        if found["costs"]:
+            closing = found["cpu_s"] - found["start_s"] - sum(found["costs"].values())
+            runs.append(prices.Measured(scene, found["costs"], found["start_s"], closing))
+    machine = ledger[key_of(drawn(FITTED), "accuracy")]["made"]["machine"]
+    fitted = prices.fit(runs, f"{machine['processor']}, {machine['cores']} cores, {machine['system']}")
+    SHIPPED.write_text(prices.to_json(fitted), "utf-8")
+    print(prices.to_json(fitted))
 
 
-def budgets(ledger: Ledger, seconds: list[float]) -> None:
-    """Whole processes with budgets: within 1.25 times the budget in 90 %, never beyond 1.6 times."""
-    shares, refused = [], []
-    print(f"{'scene':22} {'asked':>6} predicted   took  share  accuracy  exit")
-    with tempfile.TemporaryDirectory() as folder:
-        for budget in seconds or BUDGETS:
-            for name, file in scenes(Path(folder)).items():
-                found = taken(ledger, name, file, "--budget", f"{budget:g}s")
-                if found["code"] == 2:
-                    refused.append(f"{name:22} {found['words']}")
-                    continue
-                shares.append(found["cpu_s"] / budget)
-                asked, paid = _predicted(found["words"]), found["cpu_s"]
-                print(f"{name:22} {budget:5g}s {asked:8.2f}s {paid:5.2f}s {shares[-1]:6.2f}   {found['accuracy']:.1e}"
-                      f"  {found['code']:4}", flush=True)  # fmt: skip
-    print("below the least price:", *refused, sep="\n")
-    if shares:
-        within, median = np.mean(np.array(shares) <= 1.25), np.median(shares)
-        print(f"{len(shares)} runs: within 1.25 times in {within:.0%}, worst {max(shares):.2f}, median {median:.2f}")
-
-
-def _predicted(words: str) -> float:
-    return float(words.split("a: ")[1].split(" CPU s, predicted")[0])
+def check(ledger: Ledger, count: int) -> None:
+    """Two runs of each of ``count`` scenes: predicted and actual CPU seconds, and estimates with a budget over those
+    of the default run that took as many CPU seconds."""
+    ratios, shares, worse, known = [], [], [], prices.load_prices()
+    print("seed family                           factor   asked   predicted    took ratio |  budget    took share |"
+          " estimates a, m, n   all")  # fmt: skip
+    for seed in range(CHECKED, CHECKED + count):
+        scene = drawn(seed)
+        first = taken(ledger, scene, "accuracy")
+        second = taken(ledger, scene, "budget", first["cpu_s"])
+        budget, predicted = first["cpu_s"], known.price(scene, start=first["start_s"]).cpu_s
+        shares.append(second["cpu_s"] / budget)
+        if predicted:
+            ratios.append(first["cpu_s"] / predicted)
+        keys = sorted({*first["estimate"]} & {*second["estimate"]})
+        of_all = [second["estimate"][key] / first["estimate"][key] for key in keys if first["estimate"][key]]
+        ends = [max(each["estimate"].get(key, 0.0) for key in "amn") for each in (first, second)]
+        worse.append(max(of_all, default=1.0))
+        told = f"{predicted:8.2f}s {first['cpu_s']:6.2f}s {ratios[-1]:5.2f}" if predicted else (
+            f"not known {first['cpu_s']:6.2f}s     -")  # fmt: skip
+        print(f"{seed} {prices.family(scene):32} {scene.fem.factor:8} {scene.fem.accuracy:.1e} {told} | "
+              f"{budget:6.2f}s {second['cpu_s']:6.2f}s {shares[-1]:5.2f} | {ends[0]:.1e} {ends[1]:.1e} "
+              f"{worse[-1]:5.2f}", flush=True)  # fmt: skip
+    if ratios:
+        within = sum(1 / prices.TRUSTED <= ratio <= prices.TRUSTED for ratio in ratios)
+        print(f"prices: {len(ratios)} of {count} known, {within} within {prices.TRUSTED:g} times, "
+              f"ratios {min(ratios):.2f} to {max(ratios):.2f}")  # fmt: skip
+    print(f"budgets: estimates larger than those of the default run in {sum(ratio > 1.001 for ratio in worse)} of "
+          f"{count}, worst {max(worse):.2f}; took at most 1.25 times the budget in "
+          f"{sum(share <= 1.25 for share in shares)}, worst {max(shares):.2f}")  # fmt: skip
 
 
 if __name__ == "__main__":
-    tables = {"fit": fit, "check": check, "budgets": budgets}
+    tables = {"fit": fit, "check": check}
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=[*tables])
     parser.add_argument("ledger", type=Path)
-    parser.add_argument("seconds", nargs="*", type=float, help="of budgets: which")
+    parser.add_argument("count", nargs="?", type=int, default=60, help="of scenes; of check each runs twice")
     given = parser.parse_args()
-    tables[given.what](Ledger(given.ledger), given.seconds)
+    tables[given.what](Ledger(given.ledger), given.count)

@@ -17,8 +17,8 @@ from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.expense import Expense, work_again
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
-from partialslip_fem.goals import Goal, course, gaps, size_reached, worst
-from partialslip_fem.mesh_solution import Adapted
+from partialslip_fem.goals import Goal, NextMesh, course, gaps, size_reached, worst
+from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.plates import compliance_error
 from partialslip_fem.problem import Problem
 
@@ -36,6 +36,10 @@ _MOST_UNKNOWNS = 200_000  # limit: on a mesh from which no finer one is made
 _CHOICES = 13  # cost: accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
 _MOST_CUTS = 16  # limit: meshes whose contact line cuts the contact; the next line is a tenth of a wider on both sides
 _OF_HALF = 0.01  # cost: element size at the corners of the second punch of pressing, in half-widths of the contact
+# cost: of the CPU seconds left: predicted seconds beyond them with which the scene's accuracy is tried nevertheless
+_OVERDRAFT = 0.3
+_FINER_BY = 2.0  # cost: of the accuracy that was reached: the next one is at least so much finer
+_CHECKED = 3.0  # cost: of following a load path: with the check of its steps, which are twice as many then
 _WORTH = 1.2  # cost: of the unknowns of the present mesh: a mesh with fewer is not worth solving on
 
 
@@ -46,6 +50,7 @@ def adapt(
     clock: Clock,
     progress: Callable[[str], None],
     keep: Kept | None = None,
+    order_for: Callable[[float], int] | None = None,
 ) -> Adapted:
     """Refine until the ends are known to ``accuracy``, by the estimates of :mod:`partialslip_fem.estimate`.
 
@@ -53,6 +58,10 @@ def adapt(
     the growth of the next mesh. The error away from the ends costs a second solution and is estimated only where the
     elements at the ends are small enough. Load steps are chosen on the first mesh that is fine enough and kept; the
     mesh is not refined to make up for their error.
+
+    With an allowance of CPU seconds the same meshes are made, as far as the allowance suffices. If it does not, the
+    accuracy is the best that it suffices for. What is left may be spent on finer meshes (:attr:`Clock.finest`). The
+    solution with the smallest estimate is returned.
 
     Parameters
     ----------
@@ -67,6 +76,8 @@ def adapt(
         Called with one line after each mesh.
     keep : Kept, optional
         Condensed bodies of the first mesh, to reuse and to add to.
+    order_for : callable, optional
+        ``order_for(accuracy)``: order of the elements for a finer accuracy; default: the order of ``problem``.
 
     Raises
     ------
@@ -83,7 +94,9 @@ def adapt(
         if refinement.finished:
             refinement.check_steps()
             if refinement.solution.enclosed:  # finer steps may lead to a wider contact
-                return refinement.adapted(max(accuracy, refinement.error / goals.BAR))
+                refinement.keep_best()
+                if not refinement.aim_finer(order_for or (lambda _: problem.order)):
+                    return refinement.best_of_all()
         refinement.plan_next_mesh()
 
 
@@ -99,7 +112,10 @@ class _Refinement:
         self.problem, self.clock = problem, clock
         self.expense = Expense(clock, len(problem.parts))
         self.solution, self.meshes, self.factored = solve_on_first_mesh(problem, width, clock, keep, alone=True)
-        self.expense.measure(self.solution.dofs)
+        self.expense.measure(self.solution.dofs, self.solution.choosing_s)
+        self.march_s = 0.0  # CPU seconds of contact and friction on the present mesh, once
+        self.best: Adapted | None = None
+        self.lowered = False  # whether the goal is less than the accuracy of the scene
         self.iterations = self.solution.iterations
         self.asked_width = self.width = width  # of the blocks, in contact half-widths: asked for, and of the next mesh
         self.limit = contact_line_limit(problem)
@@ -144,29 +160,53 @@ class _Refinement:
         known = f", {', '.join(self.errors)} known to {self.error:.1e} a" if self.error < np.inf else ""
         return f"mesh {self.meshes}: {self.solution.dofs:,} unknowns{known}"
 
+    @property
+    def _overdraft(self) -> float:
+        """CPU seconds beyond those left that the accuracy of the scene may be planned with."""
+        return max(_OVERDRAFT * self.clock.remaining(), self.clock.overdraft)
+
     def check_steps(self) -> None:
         """Check the load steps on the present mesh and estimate their errors anew, where steps matter: the mesh on
         which they were chosen saw less of a stick zone that moves while the loads change."""
-        if self.expense.limited or not steps_matter(self.step_errors or {}, self.problem.accuracy):
+        if not steps_matter(self.step_errors or {}, self.problem.accuracy) or not self._allows_marches(1):
             return
-        coarse = self.solution
-        fine = solving.solve_contact(self.problem, coarse.bodies, coarse.factored, self.clock, True, before=coarse)
+        fine = self._solved_again()
         self.solution, self.step_errors = fine, fine.step_errors
         self.iterations += fine.iterations
+        self.expense.pass_over()
 
-    def adapted(self, settled: float) -> Adapted:
-        """The present solution as the last one; ``settled`` is its accuracy, if there is an allowance."""
-        reached_accuracy = settled if self.expense.limited else None
-        return Adapted(
-            self.solution,
-            self.errors,
-            self.meshes,
-            self.factored,
-            self.iterations,
-            self.width,
-            reached_accuracy,
-            self.plates_error,
-        )
+    def keep_best(self) -> None:
+        """Keep the present solution if its estimated errors are smaller than those of the solutions before."""
+        error = worst(self.errors)
+        if self.best and error >= worst(self.best.errors):
+            return
+        settled = max(self.problem.accuracy, error / goals.BAR) if self.expense.limited else None
+        self.best = Adapted(self.solution, self.errors, 0, 0, 0, self.width, settled, self.plates_error)
+
+    def best_of_all(self) -> Adapted:
+        """The best solution, with the work on all meshes."""
+        assert self.best
+        made, factored, iterations = self.meshes, self.factored, self.iterations
+        return replace(self.best, meshes=made, factorizations=factored, iterations=iterations)
+
+    def aim_finer(self, order_for: Callable[[float], int]) -> bool:
+        """Choose the finest accuracy beyond the present one that the rest of the allowance suffices for, as far as the
+        allowance goes; tell whether there is one."""
+        finest = max(self.clock.finest, worst(self.step_errors or {}), worst(self.path_errors))
+        most = min(self.goal.accuracy, self.error / goals.BAR) / _FINER_BY
+        if not finest <= most or self.error > self.bar:
+            return False
+        for accuracy in np.geomspace(finest, most, _CHOICES).tolist():
+            problem = replace(self.problem, accuracy=accuracy, order=order_for(accuracy))
+            goal = Goal.at(accuracy, problem)
+            least = goal.growth * (self.least / self.goal.growth if problem.order == self.problem.order else 1.0)
+            size = goal.element_size(self.solution, problem)
+            finer = 1.0 if size_reached(self.size, size) else self.finer
+            if self._affords(problem, course(self.size, finer, size, least, problem.order)):
+                self.problem, self.goal, self.least, self.finer = problem, goal, least, finer
+                self.error_before = np.inf
+                return True
+        return False
 
     def settle(self) -> Adapted | None:
         """Choose the best accuracy that the rest of the allowance suffices for.
@@ -177,12 +217,15 @@ class _Refinement:
             return None
         affordable = self._affordable_goal()
         if self.end_errors and not affordable:
-            if self.error == np.inf:
+            if self.error == np.inf and not self.best:
                 self._estimate_together()
-            return self.adapted(max(self.problem.accuracy, worst(self.errors) / goals.BAR))
+                self.error = worst(self.errors)
+            if self.error < np.inf:
+                self.keep_best()
+            return self.best_of_all()
         if affordable and affordable is not self.goal:
             self.least = self.least * affordable.growth / self.goal.growth
-            self.goal = affordable
+            self.goal, self.lowered = affordable, True
             if size_reached(self.size, self.goal.element_size(self.solution, self.problem)):
                 self.finer = 1.0
         return None
@@ -206,10 +249,14 @@ class _Refinement:
         expected = None
         if self.expense.limited:
             expected = self.expense.unknowns(grading, problem.order, self.block_width)
+        self.contact_s = self.clock.phases.get("contact", 0.0)
         choose = self.step_errors is None and not self.path_errors and self.size <= goals.COARSEST
         self.solution = solving.mesh_and_solve(
             problem, self.block_width, grading, self.clock, None, choose, self.solution
         )
+        contact = self.clock.phases.get("contact", 0.0)
+        self.march_s = contact - self.contact_s - self.solution.choosing_s
+        self.expense.measure(self.solution.dofs, self.solution.choosing_s, expected)
         if choose:
             self._keep_steps()
             self._refine_steps()
@@ -219,7 +266,6 @@ class _Refinement:
             self.path_errors, self.path_moves = self.solution.path_errors, self.solution.path_moves
         self.solution = replace(self.solution, path_errors=self.path_errors, path_moves=self.path_moves)
         solution = self.solution
-        self.expense.measure(solution.dofs, expected)
         self.meshes, self.factored = self.meshes + 1, self.factored + solution.factored
         self.iterations += solution.iterations
         if not solution.enclosed and max(-solution.reach[0], solution.reach[1]) >= self.limit:
@@ -333,17 +379,29 @@ class _Refinement:
             self.goal = Goal.at(max(self.goal.accuracy, worst(self.step_errors)), self.problem)
 
     def _refine_steps(self) -> None:
-        """Take more load steps of coupled bodies for all meshes to come, as long as their errors count, but none for
-        which an allowance was not planned."""
-        while not self.expense.limited and (path := self.problem.path) and (before := self.solution).path_errors:
+        """Take more load steps of coupled bodies for all meshes to come, as long as their errors count and the
+        allowance suffices."""
+        while (path := self.problem.path) and (before := self.solution).path_errors:
             more = more_steps(path, before.path_errors, before.step_errors, self.problem.accuracy)
-            if not more:
+            if not more or not self._allows_marches(more.substeps / path.substeps):
                 return
             self.problem = replace(self.problem, path=more)
-            self.solution = solving.solve_contact(
-                self.problem, before.bodies, before.factored, self.clock, True, before=before
-            )
+            once = self.march_s
+            self.solution = self._solved_again()
             self.iterations += before.iterations
+            self.expense.add(self.march_s - once)
+
+    def _solved_again(self) -> MeshSolution:
+        """Solve contact and friction once more on the present mesh, and check the load steps."""
+        before, began = self.solution, self.clock.phases["contact"]
+        found = solving.solve_contact(self.problem, before.bodies, before.factored, self.clock, True, before=before)
+        self.march_s = self.clock.phases["contact"] - began - found.choosing_s
+        return found
+
+    def _allows_marches(self, times: float) -> bool:
+        """Whether the allowance suffices to follow the load path in so many ``times`` as many steps as on the present
+        mesh, and to check these steps."""
+        return self.expense.allows(_CHECKED * times * self.march_s, self._overdraft)
 
     def _errors_of_ends(self, at_ends: Array, at_kinks: Array) -> dict[str, float]:
         """Errors due to elements of given sizes at ends and kinks, to round faces and to corners."""
@@ -359,7 +417,8 @@ class _Refinement:
 
         Returns the errors away from the ends.
         """
-        other = estimate.neighbour(self.solution, self.problem, self.block_width, self.clock)
+        problem = replace(self.problem, order=self.solution.lower.order)
+        other = estimate.neighbour(self.solution, problem, self.block_width, self.clock)
         self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
         smooth = estimate.smooth_errors(self.solution, other, self.eased, self.problem.breaks)
         self.errors = estimate.combined(self.solution, smooth, self.end_errors)
@@ -369,35 +428,39 @@ class _Refinement:
     def _affordable_goal(self) -> Goal | None:
         """The best goal, none beyond the present one, that the rest of the allowance suffices for.
 
-        None if the present solution, with its errors estimated, is about as good.
+        None if the present solution, with its errors estimated, is about as good. As long as the goal is the accuracy
+        of the scene, the rest need suffice only for the next mesh with small elements, and only nearly: the course is a
+        cautious one, and that mesh may be the last.
         """
         solution, problem = self.solution, self.problem
-        order, a = problem.order, solution.half_width
+        order = problem.order
         done = bool(self.end_errors) and solution.enclosed
-        once_more = work_again(order, estimate.NEIGHBOUR[order]) + problem.inside
         best: Goal = self.goal
         asked = self.goal.accuracy
-        ends = solution.zone_ends.tolist()
         for accuracy in np.geomspace(asked, max(goals.LOOSEST, asked), _CHOICES).tolist():
             best = self.goal if accuracy == asked else Goal.at(accuracy, problem)
             size_goal = best.element_size(solution, problem)
             finer = self.finer if best is self.goal or not size_reached(self.size, size_goal) else 1.0
             meshes = course(self.size, finer, size_goal, self.least * best.growth / self.goal.growth, order)
-            unknowns = [
-                self.expense.unknowns(
-                    Grading(
-                        (-a, a),
-                        dict.fromkeys(ends, mesh.size * a),
-                        mesh.growth,
-                        eased=goals.eased(solution, problem, order, mesh.growth),
-                    ),
-                    order,
-                    self.width * a,
-                )
-                for mesh in meshes
-            ]
-            if done and best is not self.goal and unknowns[-1] < _WORTH * solution.dofs:
+            if done and best is not self.goal and self._unknowns(problem, meshes[-1]) < _WORTH * solution.dofs:
                 return None
-            if self.expense.affords(unknowns, once_more):
+            if best is self.goal and not (self.lowered or self.best):
+                meshes = meshes[: 1 + sum(mesh.size > goals.COARSEST for mesh in meshes)]
+                if self._affords(problem, meshes, self._overdraft):
+                    return best
+            elif self._affords(problem, meshes):
                 return best
         return None if done else best
+
+    def _affords(self, problem: Problem, meshes: list[NextMesh], beyond: float = 0.0) -> bool:
+        """Whether the rest of the allowance, and ``beyond`` more seconds, suffice for ``meshes`` and the estimate."""
+        again = work_again(problem.order, estimate.NEIGHBOUR[problem.order]) + problem.inside
+        return self.expense.affords([self._unknowns(problem, mesh) for mesh in meshes], again, beyond)
+
+    def _unknowns(self, problem: Problem, mesh: NextMesh) -> float:
+        """Predicted number of unknowns of a ``mesh``."""
+        solution, order = self.solution, problem.order
+        a, ends = solution.half_width, solution.zone_ends.tolist()
+        eased = goals.eased(solution, problem, order, mesh.growth)
+        grading = Grading((-a, a), dict.fromkeys(ends, mesh.size * a), mesh.growth, eased=eased)
+        return self.expense.unknowns(grading, order, self.width * a)

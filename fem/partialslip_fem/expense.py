@@ -34,24 +34,31 @@ class Expense:
 
     def __init__(self, clock: Clock, bodies: int) -> None:
         self._clock, self._before = clock, clock.remaining()
-        self._rate, self._ratio, self._start = 0.0, float(bodies), _START
+        self._seconds, self._work = 0.0, 1.0  # of the last mesh
+        self._ratio, self._start = float(bodies), _START
 
     @property
     def limited(self) -> bool:
         """Whether there is an allowance."""
         return self._clock.limited
 
-    def measure(self, unknowns: int, expected: float | None = None) -> None:
+    def measure(self, unknowns: int, once_s: float = 0.0, expected: float | None = None) -> None:
         """Attribute the seconds since the last call to a mesh of so many ``unknowns``.
 
-        ``expected`` is the predicted number of unknowns, which corrects later predictions.
+        The next mesh does without ``once_s`` of them. ``expected`` is the predicted number of unknowns, which corrects
+        later predictions.
         """
         if self.limited:
             left = self._clock.remaining()
-            self._rate = max(self._before - left, 0.0) / (_work(unknowns) + self._start)
+            self._seconds, self._work = max(self._before - left - once_s, 0.0), _work(unknowns) + self._start
             self._before, self._start = left, 0.0
             if expected:
                 self._ratio *= unknowns / expected
+
+    def add(self, seconds: float) -> None:
+        """Add ``seconds`` to those of the last mesh: the next ones take more load steps."""
+        self._seconds += seconds
+        self.pass_over()
 
     def pass_over(self) -> None:
         """Attribute the seconds since the last call to no mesh."""
@@ -68,13 +75,18 @@ class Expense:
             self._ratio * _PER_LENGTH * order**2 * np.trapezoid(1 / (np.maximum(growth, grading.growth) * local), x)
         )
 
-    def affords(self, meshes: Iterable[float], again: float) -> bool:
-        """Whether the seconds left suffice for ``meshes`` of so many unknowns and for solving on the last one again.
+    def affords(self, meshes: Iterable[float], again: float, beyond: float = 0.0) -> bool:
+        """Whether the seconds left, and ``beyond`` more, suffice for ``meshes`` of so many unknowns and for solving on
+        the last one again.
 
-        ``work_again`` is the work of solving again, relative to the work of the last mesh.
+        ``again`` is the work of solving again, relative to the work of the last mesh.
         """
         works = [_work(unknowns) for unknowns in meshes]
-        return self._rate * (sum(works) + again * works[-1]) <= self._clock.remaining()
+        return self.allows(self._seconds / self._work * (sum(works) + again * works[-1]), beyond)
+
+    def allows(self, seconds: float, beyond: float = 0.0) -> bool:
+        """Whether so many ``seconds`` are left, and ``beyond`` more."""
+        return seconds <= self._clock.remaining() + beyond
 
 
 def work_again(order: int, other: int) -> float:

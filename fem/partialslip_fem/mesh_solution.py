@@ -69,6 +69,8 @@ class MeshSolution:
         Points where q has a kink at single load points, but neither q1 nor q2 has.
     trail : Trail or None
         Which nodes of coupled bodies touch and slip in each step.
+    choosing_s : float
+        CPU seconds spent on the choice of load steps and on their errors: finer meshes take the same steps.
     """
 
     bodies: tuple[CondensedBody, ...]
@@ -93,6 +95,7 @@ class MeshSolution:
     path_moves: Array = field(default_factory=lambda: np.zeros((2, 2)))
     dissimilar: bool = False
     relative: Relative | None = None
+    choosing_s: float = 0.0
 
     @property
     def slips_when_pressed(self) -> bool:

@@ -2,8 +2,10 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
+from msgspec.structs import replace as replace_fields
 
 from partialslip.allowance import Allowance
 from partialslip.errors import InputError
@@ -71,7 +73,9 @@ def solve(
     with clock.phase("mesh"):
         problem = scaled(scene, plan, start)
     if scene.fem.size is None and not scene.meshed:
-        adapted = adapt(problem, scene.fem.accuracy, width, clock, progress, None if allowance else keep)
+        accuracy, order_for = scene.fem.accuracy, partial(_order_for, scene)
+        adapted = adapt(problem, accuracy, width, clock, progress, None if allowance else keep, order_for)
+        problem = replace(problem, order=adapted.solution.lower.order)
     else:
         adapted = uniform(problem, scene.fem.size, width, clock, keep)
     return to_result(scene, plan, problem, adapted, clock, start)
@@ -90,6 +94,11 @@ def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
     solution = solve_on_meshes(in_lengths, problem, width, clock, check=True)
     adapted = Adapted(solution, {}, 1, solution.factored, solution.iterations, width / solution.half_width)
     return to_result(scene, plan, problem, adapted, clock)
+
+
+def _order_for(scene: Scene, accuracy: float) -> int:
+    """Order of the elements for ``accuracy``."""
+    return replace_fields(scene.fem, accuracy=accuracy).elements
 
 
 def _check_incompressibility(scene: Scene) -> None:

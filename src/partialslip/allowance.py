@@ -16,6 +16,12 @@ class Allowance:
         CPU seconds of this process and of its meshing processes.
     spent : callable, optional
         ``spent() -> float``: CPU seconds of this process up to now.
+    finest : float, optional
+        Accuracy, as a fraction of a, up to which finite elements spend the seconds that the accuracy of the scene
+        leaves; default: none.
+    overdraft : float, optional
+        CPU seconds beyond ``seconds`` that finite elements may plan with to reach the accuracy of the scene, as their
+        predictions are too high at times.
 
     Raises
     ------
@@ -23,10 +29,16 @@ class Allowance:
         If ``seconds`` is NaN.
     """
 
-    def __init__(self, seconds: float, spent: Callable[[], float] = time.process_time) -> None:
+    def __init__(
+        self,
+        seconds: float,
+        spent: Callable[[], float] = time.process_time,
+        finest: float = math.inf,
+        overdraft: float = 0.0,
+    ) -> None:
         if math.isnan(seconds):
             raise InputError(f"allowance of {seconds} s: must be a number of CPU seconds")
-        self.seconds = seconds
+        self.seconds, self.finest, self.overdraft = seconds, finest, overdraft
         self._spent = spent
         self._began = spent()
         self._elsewhere = 0.0

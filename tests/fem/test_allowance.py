@@ -71,6 +71,29 @@ def test_what_is_allowed_is_kept_and_buys_accuracy(counter):
     assert reached[0] > reached[1] > reached[2]
 
 
+@pytest.mark.parametrize("loads", [[], ["load.P=[100e3, 135750]"], ["material.upper={E=150e9, nu=0.3}"]])
+def test_the_work_of_a_run_without_an_allowance_suffices_for_its_errors(counter, loads):
+    """Load steps are refined and checked, and meshes made, as without an allowance."""
+    scene = load_scene("fretting-aluminium", [*loads, "fem.accuracy=1e-3"])
+    free = solve(scene, plan(scene))
+    allowed, counter.seconds = counter.seconds, 0.0
+    limited = solve(scene, plan(scene), allowance=Allowance(allowed, counter))
+    assert limited.estimate == free.estimate
+    assert limited.counts == free.counts
+
+
+def test_seconds_that_are_left_buy_accuracy_up_to_the_finest(counter):
+    scene = load_scene("hertz-shear", ["fem.accuracy=1e-3"])
+    free, spent = solve(scene, plan(scene)), counter.seconds
+    found = {}
+    for times, finest in ((1, 1e-5), (1000, 1e-5), (1000, float("inf"))):
+        counter.seconds = 0.0
+        found[times, finest] = solve(scene, plan(scene), allowance=Allowance(times * spent, counter, finest))
+        assert counter.seconds <= 1.1 * times * spent
+    assert found[1, 1e-5].estimate == found[1000, float("inf")].estimate == free.estimate
+    assert max(found[1000, 1e-5].estimate[key] for key in "amn") <= 1e-5 == found[1000, 1e-5].settings["accuracy"]
+
+
 @pytest.mark.fault
 def test_meshes_taken_to_cost_nothing(counter, monkeypatch):
     monkeypatch.setattr(expense, "_work", lambda _: 1e-9)

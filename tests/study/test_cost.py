@@ -2,12 +2,10 @@
 
 import json
 import math
-import re
 
 import made
 import numpy as np
 import pytest
-from refusing import line_of
 
 import partialslip
 from partialslip.batch.job import Job, ProcessCost, solve_apart
@@ -170,68 +168,84 @@ def test_what_is_no_peers_result_is_refused(tmp_path, capsys, line, told):
 # the price list
 
 
-OVERHEADS = {"start": 0.7, "closing": 0.5, "march": 0.2}
-
-
-def entries(spread=0.0):
-    """Artificial costs from the model: Hertz contacts and punches, orders 2 and 4, both factorisations."""
+def measured(spread=0.0):
+    """Artificial costs from a model: Hertz contacts and punches, without and with mean loads, both factorisations."""
     random = np.random.default_rng(3)
-    for name in ("hertz-shear", "flat-rounded"):
-        for order, growth, factor in ((2, 1.0, "cholmod"), (4, 0.4, "cholmod"), (4, 0.5, "superlu")):
-            for digits in (2.0, 3.0, 4.0, 5.0, 6.0):
-                setting = [f"fem.order={order}", f"fem.accuracy={10**-digits!r}", f"fem.factor={factor}"]
-                scene, slow = partialslip.load_scene(name, setting), random.uniform(1, 3)
-                kind = 1.0 if name == "hertz-shear" else 1.5
-                seconds = kind * 0.1 * math.exp(growth * digits + spread * random.normal())
-                costs = {"exact": {"cost": made.cost(0.01 * slow)}, "fem": {"cost": made.cost(seconds * slow)}}
-                process = ProcessCost((0.6 + 0.01 + seconds) * slow, 0.0, 100.0)
-                yield made.solved(scene, process=process, **costs)
+    for name, kind in (("hertz-shear", 1.0), ("flat-rounded", 1.5)):
+        for loads, family in (([], 1.0), (["load.Q=[-10e3,20e3]", "load.sigma=[0,0]"], 2.0)):
+            for factor, rate in (("cholmod", 0.4), ("superlu", 0.5)):
+                for digits in (2.0, 3.0, 4.0, 5.0, 6.0):
+                    settings = [*loads, f"fem.accuracy={10**-digits!r}", f"fem.factor={factor}"]
+                    seconds = kind * family * 0.1 * math.exp(rate * digits + spread * random.normal())
+                    slow = random.uniform(1, 3)
+                    costs = {"exact": 0.1 * seconds * slow, "fem": 0.9 * seconds * slow}
+                    yield prices.Measured(partialslip.load_scene(name, settings), costs, 0.7 * slow, 0.5 * slow)
+
+
+def priced(known, name="hertz-shear", *settings, **more):
+    return known.price(partialslip.load_scene(name, ["fem.factor=cholmod", "fem.accuracy=1e-4", *settings]), **more)
 
 
 def test_the_model_is_found_again():
-    """Independent of other load on the machine; for each kind of profile, factorisation and order."""
-    known = prices.fit(entries(), OVERHEADS, "a machine")
-    assert known.spread == pytest.approx(1, abs=1e-2)
-    slow = known.price(partialslip.load_scene("hertz-shear", ["fem.factor=cholmod"]), 1e-4, 4, ("fem",)).cpu_s - 1.2
-    for name, factor, expected in (("hertz-shear", "superlu", 0.4), ("flat-rounded", "cholmod", math.log(1.5))):
-        scene = partialslip.load_scene(name, [f"fem.factor={factor}"])
-        found = known.price(scene, 1e-4, 4, ("fem",)).cpu_s - 1.2
-        assert math.log(found / slow) == pytest.approx(expected, abs=1e-2)
-    assert prices.fit(entries(0.2), OVERHEADS, "a machine").spread < 1.6
+    """Independent of other load on the machine; for each profile, family and factorisation."""
+    known = prices.fit(measured(), "a machine")
+    assert max(family.spread for family in known.families.values()) == pytest.approx(1, abs=2e-2)
+    work = known.closing + known.start
+    slow = priced(known).cpu_s - work
+    means = ["load.Q=[-10e3,20e3]", "load.sigma=[0,0]"]
+    for setting, expected in (
+        (("hertz-shear", "fem.factor=superlu"), 0.4),
+        (("flat-rounded",), math.log(1.5)),
+        (("hertz-shear", *means), math.log(2)),
+    ):
+        assert math.log((priced(known, *setting).cpu_s - work) / slow) == pytest.approx(expected, abs=3e-2)
 
 
-def test_start_report_and_other_methods_are_in_the_price():
-    known, scene = prices.fit(entries(), OVERHEADS, "a machine"), partialslip.load_scene("hertz-shear")
-    alone, marched = (known.price(scene, 1e-3, 4, methods) for methods in (("fem",), ("march", "fem")))
-    assert marched.cpu_s == pytest.approx(alone.cpu_s + 0.2)
-    assert (alone.start_s, alone.closing_s) == (0.7, 0.5)
-    assert known.price(scene, 1e-3, 4, ("fem",), 1.4).cpu_s == pytest.approx(2 * alone.cpu_s)
+def test_start_and_report_are_in_the_price():
+    known = prices.fit(measured(), "a machine")
+    once, twice = priced(known), priced(known, start=2 * known.start)
+    assert (once.start_s, once.closing_s) == (known.start, known.closing)
+    assert twice.cpu_s == pytest.approx(2**known.power * (once.cpu_s - known.start) + 2 * known.start)
+    assert 0.9 < known.power <= 1
 
 
-@pytest.mark.slow
-def test_the_cheapest_and_the_best():
-    known, scene = prices.fit(entries(), OVERHEADS, "a machine"), partialslip.load_scene("hertz-shear")
-    assert known.cheapest(scene, 1e-5).order == 4
-    budget = known.price(scene, 1e-5, 4).cpu_s
-    assert known.best(scene, budget * 1.001).accuracy == pytest.approx(1e-5, rel=0.2)
-    assert known.best(scene, budget * 1.5, start=1.4).accuracy > 1.2e-5
-    least = known.cheapest(scene, 1e-2).cpu_s
-    refusal = line_of(known.best, scene, 0.1)
-    assert re.search(r"--budget 0.1s: must be at least", refusal)
-    named = float(refusal.split("least ")[1].split(" s ")[0])
-    assert least <= named <= least + 0.1
+def test_prices_that_are_not_known_are_not_told():
+    """A family without measured runs, an accuracy beyond them, other methods, and runs that scatter."""
+    known = prices.fit(measured(), "a machine")
+    assert priced(known).cpu_s is not None
+    assert "1.0e-04 a: price not known" in str(priced(known, "fretting-aluminium", "load.P=[120e3, 135e3]"))
+    for setting in ("fem.accuracy=1e-8", "fem.order=2", "material.upper={E=1e11,nu=0.3}", "effects.history=true"):
+        assert priced(known, "hertz-shear", setting).cpu_s is None, setting
+    assert priced(known, methods=["march", "fem"]).cpu_s is None
+    assert priced(known, methods=["fem", "exact"]).cpu_s == priced(known).cpu_s
+    scattered = prices.fit(measured(1.0), "a machine")
+    assert priced(scattered, "hertz-shear", "fem.accuracy=1e-6").cpu_s is None
+    few = prices.fit([run for run in measured() if prices.family(run.scene) == "reversed"], "a machine")
+    assert [*few.families] == ["reversed"]
     with pytest.raises(partialslip.InputError, match="at least 10"):
-        prices.fit([], OVERHEADS, "a machine")
+        prices.fit([], "a machine")
 
 
-def test_the_shipped_list_rises_with_accuracy_and_covers_the_kinds():
+def test_families_follow_bodies_and_loads():
+    def family(*settings):
+        return prices.family(partialslip.load_scene("fretting-aluminium", settings))
+
+    assert family() == family("load.Q=[-1e4, 1e4]") == family("fem.accuracy=1e-6") == "reversed"
+    assert family("load.Q=[0, 3e4]") == "mean loads, slip turns round"
+    assert family("load.Q=[0, 3e4]", "load.sigma=[0, 0]") == "mean loads"
+    assert family("load.P=[120e3, 135e3]") == "varying P"
+    assert family("material.upper={E=2e11, nu=0.3}") == "unlike"
+    pad = "bodies.upper={kind='pad', width=12e-3, height=5e-3"
+    assert family(pad + "}") == "finite"
+    assert family(pad + ", support='pivot', pivot_height=1e-4}") == "pivot"
+
+
+def test_the_shipped_list_rises_with_accuracy():
     known = prices.load_prices()
-    assert {*known.kinds} == {"hertz", "flat-rounded", "tabulated"}
-    for factor in ("cholmod", "superlu"):
-        scene = partialslip.load_scene("flat-rounded", [f"fem.factor={factor}"])
-        paid = [known.cheapest(scene, asked).cpu_s for asked in (1e-2, 1e-4, 1e-6, 1e-8)]
-        assert paid == sorted(paid)
-        assert paid[0] > known.start + known.closing
+    assert {*known.profiles} == {"hertz", "flat-rounded"}
+    paid = [priced(known, "hertz-shear", f"fem.accuracy={asked}").cpu_s for asked in (1e-3, 1e-4, 1e-5)]
+    assert paid == sorted(paid)
+    assert paid[0] > known.start + known.closing
 
 
 @pytest.mark.parametrize("extra", [("--with", "exact"), ("--set", "fem.size=0.1")])
@@ -249,8 +263,24 @@ def test_a_price_is_told_and_the_accuracy_reached(tmp_path, capsys):
     printed = capsys.readouterr()
     assert "predicted" in printed.err
     assert "actual" in printed.out
-    found = json.loads((tmp_path / "results.json").read_text("utf-8"))["comparison"]["fem"]["errors"]
+    text = json.loads((tmp_path / "results.json").read_text("utf-8"))
+    found, estimate = text["comparison"]["fem"]["errors"], text["methods"]["fem"]["estimate"]
     assert max(found[key] for key in ("a", "m", "n")) <= 1e-3
+    assert f"known to {max(estimate[key] for key in ('a', 'm', 'n')):.1e} a" in printed.out
+
+
+def test_a_budget_goes_beyond_the_default_accuracy_and_tells_the_estimate(tmp_path, capsys, monkeypatch):
+    """Up to the finest accuracy, or to the one that is set."""
+    monkeypatch.setattr(prices, "FINEST", 1e-7)
+    for settings, finest in ([], 1e-7), (["--set", "fem.accuracy=1e-3"], 1e-3):
+        out = tmp_path / str(finest)
+        assert main(["run", "hertz-shear", "--budget", "1000s", *settings, "--out", str(out)]) == 0
+        fem = json.loads((out / "results.json").read_text("utf-8"))["methods"]["fem"]
+        known = max(fem["estimate"][key] for key in ("a", "m", "n"))
+        assert fem["settings"]["accuracy"] == finest
+        printed = " ".join(capsys.readouterr().out.split())
+        assert "budget of 1000 s" in printed
+        assert f"known to {known:.1e} a" in printed
 
 
 @pytest.mark.parametrize(

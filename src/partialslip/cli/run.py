@@ -1,6 +1,7 @@
 """partialslip run: solve a scene, compare the methods, write the report."""
 
 import argparse
+import math
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from partialslip.scene import Scene
     from partialslip.study.cost.prices import Price
 
+_OVERDRAFT = 0.25  # cost: of a budget: CPU seconds beyond it that the accuracy of the scene may be planned with
+
 
 def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
@@ -50,11 +53,11 @@ def add(commands: Commands) -> None:
                       help="methods of exact, march, fem and equivalent, separated by commas (default: exact,fem; "
                       "march,fem if Q and sigma are out of phase)")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
-                      help="accuracy of a, m and n, as a fraction of a; fem takes the element order with the lowest "
-                      "predicted cost; --set fem.order overrides it")  # fmt: skip
+                      help="accuracy of a, m and n, as a fraction of a; tells the predicted CPU seconds where they are "
+                      "known")  # fmt: skip
     runs.add_argument("--budget", metavar="SECONDS",
                       help="CPU seconds of the whole process, e.g. 5s; fem picks the best accuracy within the budget; "
-                      "--set overrides it")  # fmt: skip
+                      "with --set fem.accuracy no finer one")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
                       help="also compare stresses, and write surface.csv and, of fem, bodies.vtu")  # fmt: skip
     runs.add_argument("--start", metavar="FILE",
@@ -76,7 +79,7 @@ def _run(options: argparse.Namespace) -> int:
     check_output(options)
     if options.save == "":
         raise InputError("--save '': must name a file")
-    scene = partialslip.load_scene(options.scene, options.overrides)
+    scene = partialslip.load_scene(options.scene, [*_accuracy(options), *options.overrides])
     start = partialslip.load_state(options.start) if options.start is not None else None
     budget = _budget(options, scene, methods)
 
@@ -97,10 +100,11 @@ def _run(options: argparse.Namespace) -> int:
         return {"methods": sorted(default_methods(scene)) if {"fem", "equivalent"} & {*methods} else []}
 
     with folder_if_wanted(options, "run", scene.name, scene, known, usual) as (folder, elsewhere):
-        if price:
-            scene = partialslip.load_scene(options.scene, [*price.overrides, *options.overrides])
-            allowance = Allowance(budget - price.closing_s - price.start_s) if budget else None
-            messages().print(f"{price}, predicted", soft_wrap=True, markup=False)
+        if price and budget:
+            rest = budget - price.closing_s - price.start_s
+            allowance = Allowance(rest, finest=_finest(options), overdraft=_OVERDRAFT * budget)
+        elif price:
+            messages().print(str(price), soft_wrap=True, markup=False)
         print_long_path(scene, chosen)
         with working(scene.name) as tell:
             outcome = partialslip.run(
@@ -120,7 +124,8 @@ def _run(options: argparse.Namespace) -> int:
                 save = Path(options.save)
                 files += write_files(save.parent, {save.name: _state(outcome).save})
             files += write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
-    return print_outcome(outcome, options, files, [_paid(price, outcome, priced_at)] if price else [], elsewhere)
+    paid = _paid(price, budget, outcome, priced_at) if price else []
+    return print_outcome(outcome, options, files, paid, elsewhere)
 
 
 def _budget(options: argparse.Namespace, scene: "Scene", methods: list[str] | None) -> float | None:
@@ -137,32 +142,46 @@ def _budget(options: argparse.Namespace, scene: "Scene", methods: list[str] | No
     return budget
 
 
-def _price(
-    options: argparse.Namespace, scene: "Scene", methods: list[str] | None, budget: float | None
-) -> "Price | None":
-    """Return the price for ``--accuracy`` or ``budget``; None if neither is given."""
-    if options.accuracy is None and budget is None:
-        return None
-    import partialslip_fem.method  # noqa: F401 - imports count as start
-    from partialslip.run import default_methods
-    from partialslip.study.cost.prices import load_prices
-
-    prices, chosen = load_prices(), tuple(methods or default_methods(scene))
-    start = time.process_time() if options.own_process else None
-    if budget is not None:
-        return prices.best(scene, budget, chosen, start)
+def _accuracy(options: argparse.Namespace) -> list[str]:
+    """Return the setting of ``--accuracy``."""
+    if options.accuracy is None:
+        return []
     try:
-        accuracy = float(options.accuracy)
+        return [f"fem.accuracy={float(options.accuracy)!r}"]
     except ValueError:
         raise InputError(
             f"--accuracy {options.accuracy!r}: must be a number, a fraction of a, for example 1e-4"
         ) from None
-    check = partialslip.load_scene(options.scene, [*options.overrides, f"fem.accuracy={accuracy!r}"])
-    return prices.cheapest(check, accuracy, chosen, start)
 
 
-def _paid(price: "Price", outcome: "Run", priced_at: float) -> str:
-    """Return a line with the predicted and the actual CPU seconds, meshing processes included."""
+def _price(
+    options: argparse.Namespace, scene: "Scene", methods: list[str] | None, budget: float | None
+) -> "Price | None":
+    """Return the price of the scene, None without ``--accuracy`` and ``budget``."""
+    if options.accuracy is None and budget is None:
+        return None
+    import partialslip_fem.method  # noqa: F401 - imports count as start
+    from partialslip.study.cost.prices import load_prices
+
+    price = load_prices().price(scene, methods, time.process_time() if options.own_process else None)
+    least = price.start_s + price.closing_s
+    if budget is not None and budget < least:
+        raise InputError(
+            f"--budget {budget:g}s: must be at least {math.ceil(10 * least) / 10:g} s on this machine, the price of "
+            "start and report; or use the exact method alone (--with exact)"
+        )
+    return price
+
+
+def _finest(options: argparse.Namespace) -> float:
+    """Return the accuracy up to which a budget is spent: with ``--set fem.accuracy`` no finer one than that."""
+    from partialslip.study.cost.prices import FINEST
+
+    return math.inf if any(each.startswith("fem.accuracy") for each in options.overrides) else FINEST
+
+
+def _paid(price: "Price", budget: float | None, outcome: "Run", priced_at: float) -> list[str]:
+    """Return lines with the predicted CPU seconds or the ``budget``, the actual seconds, and what they have led to."""
     taken = (
         price.start_s
         + time.process_time()
@@ -170,9 +189,9 @@ def _paid(price: "Price", outcome: "Run", priced_at: float) -> str:
         + sum(result.cost.meshing_cpu_s for result in outcome.results.values())
     )
     fem = outcome.results.get("fem")
-    accuracy = fem.settings.get("accuracy", price.accuracy) if fem else price.accuracy
-    reached = f", for {accuracy:.1e} a" if accuracy != price.accuracy else ""
-    return f"{price}, predicted; {taken:.2g} CPU s, actual{reached}"
+    known = max((fem.estimate[key] for key in ("a", "m", "n") if key in fem.estimate), default=0.0) if fem else 0.0
+    reached = [f"a, m and n known to {known:.1e} a"] if known else []
+    return [f"{f'budget of {budget:g} s' if budget else price}; {taken:.2g} CPU s, actual", *reached]
 
 
 def _state(outcome: "Run") -> "State":

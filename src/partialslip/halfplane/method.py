@@ -132,6 +132,12 @@ def path_dependent(scene: Scene) -> bool:
     return may_turn_round(scene) and not _change(scene).cycle.holds
 
 
+def slip_turns_round(scene: Scene) -> bool:
+    """Whether slip reverses between the load points of ``scene``, two similar half-planes under constant P and loads in
+    phase."""
+    return may_turn_round(scene) and isinstance(_change(scene).cycle, Turning)
+
+
 class _Change(NamedTuple):
     """The contact ``pressed``, its change over half a ``cycle``, and the ``cpu`` and ``wall`` seconds that it took."""
 

@@ -81,6 +81,16 @@ class Clock:
         """Whether there is an allowance."""
         return self._allowance is not None
 
+    @property
+    def finest(self) -> float:
+        """Accuracy up to which seconds that are left may be spent; infinite: that of the scene suffices."""
+        return self._allowance.finest if self._allowance else math.inf
+
+    @property
+    def overdraft(self) -> float:
+        """CPU seconds beyond those left that the accuracy of the scene may be planned with."""
+        return self._allowance.overdraft if self._allowance else math.inf
+
     def remaining(self) -> float:
         """Return the CPU seconds left; infinite without an allowance."""
         return self._allowance.remaining() if self._allowance else math.inf

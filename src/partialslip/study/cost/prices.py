@@ -1,18 +1,23 @@
-"""The price list: predicted CPU seconds of a finite-element run by accuracy, fitted to a ledger of measured cases.
+"""The price list: predicted CPU seconds of a run by scene and accuracy, fitted to measured runs.
 
-CPU seconds of the method are modelled as exp(c0 + c1 d + c2 d^2) with d = log10(1/accuracy) and c by element order,
-times a factor of the profile's kind and a factor of SuperLU, which grows with d. Bodies that are not mirror images cost
-twice as much. Start, report and the other methods are added. All seconds are scaled by the CPU seconds that this
-process took to start, because they depend on the machine and on other load. Long load paths cost more than predicted.
+CPU seconds of the default methods are modelled as exp(c0 + c1 d + c2 d^2) with d = log10(1/accuracy), times factors
+that change with d: of the family of the scene (its loads and bodies), of the profile's kind, and of SuperLU. Start and
+report are added. Seconds depend on the machine and on other load: they are scaled by a power of the CPU seconds that
+this process took to start.
+
+A price is told only where it is known: for families that were measured, and if the predicted seconds of nine of ten
+fitted runs of the family leave the price of the process within 1.3 times.
+
+Allowances do without the list (:mod:`partialslip_fem.expense`): a run measures its own meshes and load steps, which no
+list knows.
 """
 
 import importlib.util
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from importlib import resources
-from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
@@ -20,20 +25,22 @@ from scipy.optimize import least_squares
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.plan import plan
-from partialslip.scene import Scene
+from partialslip.halfplane.method import slip_turns_round
+from partialslip.run import default_methods
+from partialslip.scene import Effects, Fem, Scene
 
-if TYPE_CHECKING:
-    from partialslip.batch.job import Solved
-
-_FINEST, _COARSEST = 1e-9, 1e-2  # limit: accuracies that a price is known for
-_CHOICES = 141  # cost: number of accuracies from _COARSEST to _FINEST
-_SPEEDS = 0.2, 5.0  # limit: the scale factor: a slower start has other reasons than the machine
+FINEST = 1e-9  # limit: finest accuracy that a budget is spent on
+TRUSTED = 1.3  # accuracy: largest factor between price and cost, in nine of ten runs, with which a price is told
+_MIDDLE = 4.0  # fixed: digits at which factors are those of the list
+_FEWEST = 5  # accuracy: measured runs of a family, of a profile or of SuperLU, below which no price is told
+_ALONE = 0.05  # limit: least share of the variance of a run's error that the fit leaves
+_PULL = 1.0  # accuracy: weight of a measured run that says: this factor does not grow with the digits
+_POWERS = 0.5, 1.0  # accuracy: bounds of the power of the start: starts jitter more than long runs do
 
 
 @dataclass(frozen=True)
 class Price:
-    """Predicted cost of a finite-element run.
+    """Predicted cost of a run.
 
     Parameters
     ----------
@@ -41,25 +48,68 @@ class Price:
         Order of the elements.
     accuracy : float
         Accuracy, as a fraction of a.
-    cpu_s : float
-        CPU seconds of the whole process.
+    cpu_s : float or None
+        CPU seconds of the whole process; None if they are not known.
     start_s, closing_s : float
-        Parts of ``cpu_s`` for the start, and for report and exit.
+        CPU seconds of the start, and of report and exit.
     """
 
     order: int
     accuracy: float
-    cpu_s: float
+    cpu_s: float | None
     start_s: float
     closing_s: float
 
-    @property
-    def overrides(self) -> list[str]:
-        """Settings of order and accuracy for :func:`partialslip.load_scene`."""
-        return [f"fem.order={self.order}", f"fem.accuracy={self.accuracy!r}"]
-
     def __str__(self) -> str:
-        return f"P{self.order} at {self.accuracy:.1e} a: {self.cpu_s:.2g} CPU s"
+        cost = "price not known" if self.cpu_s is None else f"{self.cpu_s:.2g} CPU s, predicted"
+        return f"P{self.order} at {self.accuracy:.1e} a: {cost}"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A measured run.
+
+    Parameters
+    ----------
+    scene : Scene
+    costs : mapping of str to float
+        CPU seconds by method.
+    start_s, closing_s : float
+        CPU seconds of the start, and of report and exit.
+    """
+
+    scene: Scene
+    costs: Mapping[str, float]
+    start_s: float
+    closing_s: float
+
+
+class Factor(msgspec.Struct, frozen=True):
+    """Logarithm of a factor, and its increase per digit of the accuracy."""
+
+    log: float
+    per_digit: float
+
+    def at(self, digits: float) -> float:
+        """Logarithm of the factor at so many ``digits``."""
+        return self.log + self.per_digit * (digits - _MIDDLE)
+
+
+class Family(msgspec.Struct, frozen=True):
+    """What the list knows of a family of scenes.
+
+    Parameters
+    ----------
+    factor : Factor
+    spread : float
+        Factor between predicted and measured CPU seconds of the methods that nine of ten fitted runs do not exceed.
+    range : tuple of float
+        Digits of the fitted runs, from and to.
+    """
+
+    factor: Factor
+    spread: float
+    range: tuple[float, float]
 
 
 class Prices(msgspec.Struct, frozen=True, kw_only=True):
@@ -67,95 +117,59 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
 
     Parameters
     ----------
-    orders : dict
-        c0, c1 and c2 by element order, with CHOLMOD and a Hertz contact.
-    kinds : dict
-        Logarithm of the factor by kind of profile.
-    superlu : tuple
-        Logarithm of SuperLU's factor, and its increase per digit.
-    finest : dict
-        Finest measured accuracy by order. An order is not offered beyond, except the order measured finest.
-    methods : dict
-        CPU seconds of the other methods.
+    curve : tuple of float
+        c0, c1 and c2, for Hertz contacts under fully reversed loads and CHOLMOD.
+    families : dict
+        :class:`Family` by :func:`family`.
+    profiles : dict
+        :class:`Factor` by kind of profile.
+    superlu : Factor or None
     start, closing : float
         CPU seconds of the start, and of report and exit.
-    spread : float
-        Factor between predicted and measured cost that nine of ten fitted cases do not exceed.
+    power : float
+        All seconds but those of the start go with this power of the start.
     machine : str
         Machine of the measurements.
     """
 
-    orders: dict[str, tuple[float, float, float]]
-    kinds: dict[str, float]
-    superlu: tuple[float, float]
-    finest: dict[str, float]
-    methods: dict[str, float]
+    curve: tuple[float, float, float]
+    families: dict[str, Family]
+    profiles: dict[str, Factor]
+    superlu: Factor | None
     start: float
     closing: float
-    spread: float
+    power: float
     machine: str
 
-    def price(
-        self,
-        scene: Scene,
-        accuracy: float,
-        order: int,
-        methods: Sequence[str] = ("exact", "fem"),
-        start: float | None = None,
-    ) -> Price:
-        """Return the price of ``scene`` by ``methods``, with finite elements of ``order`` at ``accuracy``.
+    def price(self, scene: Scene, methods: Collection[str] | None = None, start: float | None = None) -> Price:
+        """Return the price of ``scene``.
 
         Parameters
         ----------
         scene : Scene
-        accuracy : float
-            Fraction of a.
-        order : int
-            Order of the elements.
-        methods : sequence of str
+        methods : collection of str, optional
+            Default: those that :func:`partialslip.run` chooses; a price is known for these alone.
         start : float, optional
             CPU seconds that this process took to start; default: as on the machine of the measurements.
         """
-        speed = float(np.clip(start / self.start, *_SPEEDS)) if start else 1.0
-        digits = math.log10(1 / accuracy)
-        cost = sum(c * digits**power for power, c in enumerate(self.orders[str(order)]))
-        cost += self.kinds.get(_kind(scene), 0.0) + math.log(_bodies(scene))
-        if _superlu(scene):
-            cost += self.superlu[0] + self.superlu[1] * digits
-        others = sum(self.methods.get(method, 0.0) for method in methods)
-        begun, closing = start or self.start, speed * self.closing
-        return Price(order, accuracy, begun + speed * (others + math.exp(cost)) + closing, begun, closing)
+        begun, speed = start or self.start, ((start or self.start) / self.start) ** self.power
+        closing, cost = speed * self.closing, None
+        work = None if methods and {*methods} != {*default_methods(scene)} else self._work(scene)
+        if work:
+            seconds, spread = speed * work[0], work[1]
+            cost = begun + seconds + closing
+            cost = cost if cost + (spread - 1) * seconds <= TRUSTED * cost else None
+        return Price(scene.fem.elements, scene.fem.accuracy, cost, begun, closing)
 
-    def cheapest(
-        self, scene: Scene, accuracy: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
-    ) -> Price:
-        """Return the lowest price of ``accuracy`` for ``scene``; ``methods`` and ``start`` as for :meth:`price`."""
-        least = min(self.finest.values())
-        offered = [order for order, finest in self.finest.items() if finest <= max(accuracy, least) * 1.01]
-        prices = (self.price(scene, accuracy, int(order), methods, start) for order in offered)
-        return min(prices, key=lambda price: price.cpu_s)
-
-    def best(
-        self, scene: Scene, budget: float, methods: Sequence[str] = ("exact", "fem"), start: float | None = None
-    ) -> Price:
-        """Return the price of the finest accuracy of ``scene`` within ``budget`` CPU seconds.
-
-        ``methods`` and ``start`` as for :meth:`price`.
-
-        Raises
-        ------
-        InputError
-            If an accuracy of 1e-2 costs more than the budget.
-        """
-        least = self.cheapest(scene, _COARSEST, methods, start)
-        if least.cpu_s > budget:
-            raise InputError(
-                f"--budget {budget:g}s: must be at least {math.ceil(10 * least.cpu_s) / 10:g} s on this machine, the "
-                f"price of an accuracy of {_COARSEST:g} a; or use the exact method alone (--with exact)"
-            )
-        accuracies = np.geomspace(_COARSEST, max(_FINEST, min(self.finest.values())), _CHOICES)
-        prices = (self.cheapest(scene, asked, methods, start) for asked in accuracies.tolist())
-        return min((price for price in prices if price.cpu_s <= budget), key=lambda price: price.accuracy)
+    def _work(self, scene: Scene) -> tuple[float, float] | None:
+        """CPU seconds of the methods, and the factor up to which they are known; None if they are not known."""
+        digits = math.log10(1 / scene.fem.accuracy)
+        known, profile = self.families.get(family(scene)), self.profiles.get(_profile(scene))
+        superlu = self.superlu if _superlu(scene) else Factor(0.0, 0.0)
+        if not known or not profile or not superlu or not known.range[0] <= digits <= known.range[1]:
+            return None
+        curve = sum(c * digits**power for power, c in enumerate(self.curve))
+        return math.exp(curve + sum(each.at(digits) for each in (known.factor, profile, superlu))), known.spread
 
 
 def load_prices() -> Prices:
@@ -164,66 +178,93 @@ def load_prices() -> Prices:
     return msgspec.json.decode(text, type=Prices)
 
 
-def fit(entries: "Iterable[Solved]", overheads: Mapping[str, float], machine: str) -> Prices:
-    """Fit the price list of adapted finite elements.
+def family(scene: Scene) -> str:
+    """Return what sets the cost of ``scene`` beside profile, accuracy and factorisation: its bodies, its loads and
+    settings that few use; "reversed" for two equal half-planes under fully reversed loads."""
+    load, fem = scene.load, scene.fem
+    own = [body for body in (scene.bodies.lower, scene.bodies.upper) if body]
+    usual = Fem(accuracy=fem.accuracy, factor=fem.factor)
+    found = {
+        "unlike": not scene.material.alike,
+        "finite": scene.finite and scene.pin is None,
+        "pivot": scene.pin is not None,
+        "gripped": any(body.pulled or body.holder or body.mesh for body in own),
+        "varying P": scene.presses_anew,
+        "mean loads": load.in_phase and any(sum(each) for each in (load.Q, load.sigma)),
+        "out of phase": not load.in_phase,
+        "more loads": len(load.points) > 2 or load.steps > 1 or load.cycles is not None,
+        "plates moved": load.displacement is not None,
+        "slopes": any(load.sigma_slope),
+        "f varies": scene.friction.varies,
+        "not even": not scene.even,
+        "settings": fem != usual or scene.effects != Effects(),
+    }
+    names = [name for name, holds in found.items() if holds]
+    if {*names} <= {"mean loads"} and slip_turns_round(scene):
+        names.append("slip turns round")
+    return ", ".join(names) or "reversed"
 
-    Parameters
-    ----------
-    entries : iterable of Solved
-        Entries of a ledger. Cases from :func:`partialslip.batch.job.solve_apart` are scaled by the start of the
-        process, because the machine may have had other load.
-    overheads : mapping of str to float
-        CPU seconds "start" and "closing", and of other methods by name.
-    machine : str
-        Machine of the measurements.
+
+def fit(runs: Iterable[Measured], machine: str) -> Prices:
+    """Fit the price list to measured ``runs``, measured on ``machine``.
 
     Raises
     ------
     InputError
-        If there are fewer than ten cases.
+        If there are fewer than ten runs.
     """
-    cases = []
-    for entry in entries:
-        if entry.run and "fem" in entry.run.methods and entry.run.scene.fem.size is None:
-            scene = entry.run.scene
-            costs = {name: method.cost.cpu_s for name, method in entry.run.methods.items()}
-            start = entry.process.cpu_s - sum(costs.values()) if entry.process else 1.0
-            digits = math.log10(1 / scene.fem.accuracy)
-            cases.append((scene.fem.elements, _kind(scene), _superlu(scene), digits, _bodies(scene), start, costs))
+    cases = [run for run in runs if run.scene.fem.size is None]
     if len(cases) < 10:
-        raise InputError(f"a price list needs at least 10 measured cases of adapted finite elements, not {len(cases)}")
-    orders, kinds = sorted({case[0] for case in cases}), sorted({case[1] for case in cases} - {"hertz"})
-    starts = np.array([case[5] for case in cases])
-    found = np.log(np.array([case[6]["fem"] / case[4] for case in cases]) * np.median(starts) / starts)
-    columns = np.array(
-        [
-            [(order == each) * digits**power for each in orders for power in range(3)]
-            + [float(kind == each) for each in kinds]
-            + [float(other), other * digits]
-            for order, kind, other, digits, *_ in cases
-        ]
+        raise InputError(f"a price list needs at least 10 measured runs of adapted finite elements, not {len(cases)}")
+    digits = np.array([math.log10(1 / run.scene.fem.accuracy) for run in cases])
+    traits = [[family(run.scene), _profile(run.scene), *["superlu"] * _superlu(run.scene)] for run in cases]
+    names = sorted({trait for each in traits for trait in each} - {"reversed", "hertz"})
+    has = np.array([[name in each for name in names] for each in traits], dtype=float)
+    starts = np.array([run.start_s for run in cases])
+    usual = float(np.median(starts))
+    seconds = np.log([sum(run.costs.values()) for run in cases])
+    columns = np.hstack(
+        [digits[:, None] ** np.arange(3), np.log(starts / usual)[:, None], has, has * (digits - _MIDDLE)[:, None]]
     )
-    # prices must not decrease with the digits
-    lower = np.concatenate([np.tile([-np.inf, 0.0, 0.0], len(orders)), np.full(len(kinds) + 2, -np.inf)])
-    guess = np.maximum(lower, np.zeros(columns.shape[1])) + 0.01
+    count = len(names)
+    pull = np.hstack([np.zeros((count, 4 + count)), _PULL * np.eye(count)])
+    free = np.full(2 * count, np.inf)
+    lower = np.concatenate([[-np.inf, 0.0, 0.0, _POWERS[0]], -free])  # prices must not decrease with the digits
+    upper = np.concatenate([[np.inf, np.inf, np.inf, _POWERS[1]], free])
+    guess = np.concatenate([[0.0, 0.1, 0.1, sum(_POWERS) / 2], 0 * has[0], 0 * has[0]])
 
-    def off(parameters: Array) -> Array:
-        difference: Array = columns @ parameters - found
+    def off(fitted: Array) -> Array:
+        difference: Array = np.concatenate([columns @ fitted - seconds, pull @ fitted])
         return difference
 
-    fitted = least_squares(off, guess, bounds=(lower, np.inf), loss="soft_l1", f_scale=0.3).x
-    rows, rest = fitted[: 3 * len(orders)].reshape(-1, 3).tolist(), fitted[3 * len(orders) :].tolist()
-    exact = [case[6]["exact"] for case in cases if "exact" in case[6]]
-    methods = {key: value for key, value in overheads.items() if key not in ("start", "closing")}
+    fitted = least_squares(off, guess, bounds=(lower, upper), loss="soft_l1", f_scale=0.3).x
+    logs, growths = fitted[4 : 4 + count].tolist(), fitted[4 + count :].tolist()
+    enough = has.sum(axis=0) >= _FEWEST
+    factors = {
+        name: Factor(log, growth)
+        for name, log, growth, known in zip(names, logs, growths, enough, strict=True)
+        if known
+    }
+    factors |= {"reversed": Factor(0.0, 0.0), "hertz": Factor(0.0, 0.0)}
+    # studentised: few runs are fitted better than others are predicted
+    rows = np.vstack([columns, pull])
+    leverage = np.einsum("ij,ji->i", columns, np.linalg.pinv(rows)[:, : len(cases)])
+    errors, families = np.abs(off(fitted)[: len(cases)]) / np.sqrt(np.maximum(1 - leverage, _ALONE)), {}
+    for name in sorted({each[0] for each in traits} & {*factors}):
+        own = np.array([each[0] == name for each in traits])
+        if own.sum() < _FEWEST:
+            continue
+        spread = float(np.exp(np.quantile(errors[own], 0.9)))
+        families[name] = Family(factors[name], spread, (float(digits[own].min()), float(digits[own].max())))
+    power = float(fitted[3])
     return Prices(
-        orders={str(order): tuple(row) for order, row in zip(orders, rows, strict=True)},
-        kinds={"hertz": 0.0, **dict(zip(kinds, rest, strict=False))},
-        superlu=(rest[-2], rest[-1]),
-        finest={str(order): float(10.0 ** -max(case[3] for case in cases if case[0] == order)) for order in orders},
-        methods={**({"exact": float(np.median(exact))} if exact else {}), **methods},
-        start=overheads["start"],
-        closing=overheads["closing"],
-        spread=float(np.exp(np.quantile(np.abs(off(fitted)), 0.9))),
+        curve=tuple(fitted[:3].tolist()),
+        families=families,
+        profiles={name: factors[name] for name in sorted({each[1] for each in traits} & {*factors})},
+        superlu=factors.get("superlu"),
+        start=usual,
+        closing=float(np.median([run.closing_s * (usual / run.start_s) ** power for run in cases])),
+        power=power,
         machine=machine,
     )
 
@@ -233,12 +274,7 @@ def to_json(prices: Prices) -> str:
     return json.dumps(msgspec.to_builtins(prices), indent=1) + "\n"
 
 
-def _bodies(scene: Scene) -> int:
-    """Return the number of bodies to mesh and to factor."""
-    return 1 if scene.mirrored and scene.fem.lower_size == 1 and not plan(scene).needs("coupling") else 2
-
-
-def _kind(scene: Scene) -> str:
+def _profile(scene: Scene) -> str:
     """Return the kind of the scene's profile, as named in scene files."""
     return str(type(scene.profile).__struct_config__.tag)
 
