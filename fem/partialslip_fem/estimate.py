@@ -11,7 +11,8 @@ elements. Errors then hardly depend on the order, and the change of m, n and q i
 round, load steps have no part in it, and both solutions may agree at the ends by chance: the ends are known no better
 than the slip that the way has locked in (:mod:`partialslip_fem.locked`). An end that drifts is read twice, from the
 room that q has left and from the loads at which the nodes beside it stuck again
-(:attr:`partialslip.friction.zone_ends.StickInterval.caught`): it is not known better than both readings agree.
+(:attr:`partialslip.friction.zone_ends.StickInterval.caught`): it is not known better than both readings agree. One that
+turned round and came back is not known better than the nodes beside it are apart, if these do not tell how far it came.
 
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
 the order: like those of q at kinks, they are a part of the change.
@@ -49,7 +50,7 @@ _EASED_SAFE = {6: 2.0}  # accuracy: the same for meshes that grow faster near th
 _LEAST_OF_A = 1 / 3  # accuracy: of the error of a: least error of any end
 # accuracy: Least errors of m and n where slip turns round, measured: in their own change; and the largest one due to
 # slip that is locked in, in the change of q.
-_OF_TURNED, _MOST = 0.25, 2.0
+_OF_TURNED, _MOST = 0.2, 2.0
 _NARROW = 0.1  # accuracy: of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # accuracy: Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
@@ -67,9 +68,8 @@ _SLIPPING, _STUCK = 0.02, 0.3
 # accuracy: error of an end and of p, in that of q1 and q2, as q opens the gap (measured)
 _OF_LOCKED, _P_OF_LOCKED = 0.004, 0.02
 _SIDE = 0.5  # accuracy: largest error of an end due to the fit, in the element size
-# accuracy: Where slip turns round, ends of the stick zone are known less; at one that moves over nodes that slipped,
-# q is off its bound by little: parts of the element size.
-_TURNED, _CAUGHT_UP = 5.0, 0.05
+# accuracy: error of an end that moves over nodes that slipped, in the element size: q is off its bound by little there
+_CAUGHT_UP = 0.05
 _KINK = 0.03  # accuracy: L2 error of q at a kink, in its strength times the element size
 _STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength times the shift
@@ -165,7 +165,7 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
         if solution.dissimilar:
             fitted[2:4] += _PUNCHED * sizes[:4].max() if solution.slips_when_pressed else _COUPLED * sizes[2:4]
         if solution.history and solution.history.turns:
-            fitted[2:4] = _TURNED * fitted[2:4] + _of_caught(solution, sizes[2:4])
+            fitted[2:4] += _of_caught(solution, sizes[2:4])
             fitted[2:4] += np.array(solution.stick.strips) / solution.half_width
         errors |= dict(zip("mn", fitted[2:4].tolist(), strict=True))
     if solution.history:

@@ -10,11 +10,17 @@ from the loads, so that both ends move alike.
 Two errors of s are known. One is the difference of two solutions on the same mesh. The other has the same sign in both:
 the end that moves outwards waits until the other end, which leaves node after node, has lost one. Then it jumps over
 many nodes at once, however small their elements are. An end that waits while the loads cover the share d of a leg that
-strains by 2 e, and jumps over a length L, lets points ahead slip by too much or too little, by about
-e d L^(3/2)/sqrt(2 c). On both sides of L the slip is right.
+strains by 2 e, and is off by the length l, lets points ahead slip by too much or too little, by about
+2/3 e d l^(3/2)/sqrt(2 c). Regular jumps over a length L go to and fro about the way of the end: 0.07 remains of this
+with l = L. Where waits and lengths are not in proportion, the way between the jumps before and after, by interpolation,
+passes the middle of the jump at a distance, and its sides at up to twice that: this is l, at most L. It is L where
+there are no such jumps.
 
-An error of s on an interval answers with the change of w over the interval; beside the end, where w is singular, with
-w itself. Errors of different places are independent of each other: their squares are added.
+An error of s that comes and goes within an interval answers with the change of w over the interval. Beside the end,
+where w is singular, that is too much: an error that grows from one side of the interval to the other answers with the
+mean of w. Where the other end has come back over a part of a jump, the part that is left has a share of the error that
+does not go within the zone: there the mean counts, with the length of the whole jump. To and fro do not cancel in a
+part: l is at least L/2. Errors of different places are independent of each other: their squares are added.
 """
 
 import numpy as np
@@ -22,9 +28,10 @@ import numpy as np
 from partialslip.arrays import Array, Indices
 from partialslip_fem.mesh_solution import MeshSolution
 
-# accuracy: errors of the ends, in what follows from the difference of the slip in two solutions, and from jumps
-# (measured: benchmarks/estimates.py)
-_DIFFERENT, _JUMPED = 2.0, 0.6
+# accuracy: errors of the ends, in what follows from the difference of the slip in two solutions; and factors of
+# e d l^(3/2)/sqrt(2 c) for regular jumps with l = L, twice what theory says, and for jumps off the way (measured:
+# benchmarks/estimates.py)
+_DIFFERENT, _REGULAR, _OFF = 1.5, 0.15, 1.0
 _TINY = float(np.finfo(float).tiny)
 
 
@@ -53,8 +60,9 @@ def locked_in(solution: MeshSolution, other: MeshSolution, strengths: Array) -> 
         apart = (off[1:] + off[:-1]) / 2 - off[-1:]
         squares = _DIFFERENT**2 * ((np.diff(_weight(at)) * apart) ** 2).sum()
         low, high = np.sort(way * (intervals - middle) / half_width, axis=0)
-        weights = np.minimum(_weight(high) - _weight(low), _weight((low + high) / 2))
-        squares += _JUMPED**2 * ((weights * jumps) ** 2).sum()
+        inside = np.clip([low, high], -1.0, 1.0)
+        weights = np.minimum(np.diff(_weight(inside), axis=0)[0], np.diff(_integral(inside), axis=0)[0] / (high - low))
+        squares += ((weights * jumps) ** 2).sum()
         answers.append(2 * np.sqrt(squares) / (np.pi * np.sqrt(2 * half_width) * max(strength, _TINY)))
     left, right = answers
     if stick.moved[0] != stick.moved[1]:
@@ -65,6 +73,12 @@ def locked_in(solution: MeshSolution, other: MeshSolution, strengths: Array) -> 
 def _weight(at: Array) -> Array:
     """w at the distances ``at`` from the middle of the stick zone, in its half-widths."""
     result: Array = np.sqrt(np.maximum(1 + at, 0.0) / np.maximum(1 - at, _TINY))
+    return result
+
+
+def _integral(at: Array) -> Array:
+    """Integral of w over the distance, at the distances ``at`` from the middle of the stick zone, at most 1."""
+    result: Array = np.arcsin(at) - np.sqrt(np.maximum(1 - at**2, 0.0))
     return result
 
 
@@ -82,23 +96,28 @@ def _differences(solution: MeshSolution, other: MeshSolution) -> tuple[Array, Ar
 
 
 def _jumps(solution: MeshSolution) -> tuple[Array, Array]:
-    """Intervals of nodes that stuck again at the same instant in the stick zone of ``solution``, (2, j), and errors of
-    half of the slip that is locked in there, (j,)."""
+    """Intervals of nodes that stuck again at the same instant, of which some are in the stick zone of ``solution``,
+    (2, j), and errors of half of the slip that is locked in there, (j,)."""
     stick, history = solution.stick, solution.history
     assert stick
     assert history
-    since, x = history.lasting, solution.lower.x[solution.nodes]
-    if since is None:
+    if history.lasting is None or history.stuck is None:
         return np.empty((2, 0)), np.empty(0)
-    nodes = np.flatnonzero((x > stick.left) & (x < stick.right) & np.isfinite(since))
+    since, x = np.where(np.isfinite(history.lasting), history.stuck, np.nan), solution.lower.x[solution.nodes]
+    nodes = np.flatnonzero(np.isfinite(since))
     starts = np.flatnonzero((np.diff(since[nodes], prepend=np.nan) != 0) | (np.diff(nodes, prepend=-2) > 1))
     first, last = nodes[starts], nodes[np.append(starts[1:], len(nodes))[: len(starts)] - 1]
-    edges = np.concatenate([[stick.left], (x[1:] + x[:-1]) / 2, [stick.right]])
-    intervals = np.clip([edges[first], edges[last + 1]], stick.left, stick.right)
+    edges = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
+    intervals = np.array([edges[first], edges[last + 1]])
     (one, two), cycle = history.path.ends, history.path.cycle
     strain = abs(cycle[two][1] - cycle[one][1]) / 2
     lengths = np.diff(intervals, axis=0)[0]
-    return intervals, strain * _waited(since, first, last) * lengths**1.5 / np.sqrt(stick.right - stick.left)
+    cut = (intervals[0] < stick.left) | (intervals[1] > stick.right)
+    apart = np.maximum(_off_the_way(since[first], intervals), np.where(cut, lengths / 2, 0.0))
+    off = np.hypot(_REGULAR * lengths**1.5, _OFF * apart**1.5)
+    errors = strain * _waited(since, first, last) * off / np.sqrt(stick.right - stick.left)
+    left = (intervals[0] < stick.right) & (intervals[1] > stick.left)
+    return intervals[:, left], errors[left]
 
 
 def _waited(since: Array, first: Indices, last: Indices) -> Array:
@@ -110,4 +129,20 @@ def _waited(since: Array, first: Indices, last: Indices) -> Array:
     every = np.append(0.0, np.unique(since[np.isfinite(since)]))
     before = instants - every[np.maximum(np.searchsorted(every, instants) - 1, 0)]
     result: Array = np.fmin(np.fmin(apart[1:], apart[:-1]), before)
+    return result
+
+
+def _off_the_way(instants: Array, intervals: Array) -> Array:
+    """Twice the distances of the middles of jumps over ``intervals`` (2, j), at the ``instants`` (j,), from the way of
+    the end, (j,): at most the length of the jump, which it is where there are no jumps beside it, before and after."""
+    lengths, middles = intervals[1] - intervals[0], intervals.mean(axis=0)
+    result: Array = lengths.copy()
+    if len(instants) < 3:
+        return result
+    since, until = np.diff(instants)[:-1], np.diff(instants)[1:]
+    beside = intervals[1, :-1] == intervals[0, 1:]
+    known = (since * until > 0) & beside[:-1] & beside[1:]
+    share = np.divide(since, since + until, out=np.zeros_like(since), where=known)
+    off = 2 * np.abs(middles[1:-1] - middles[:-2] - share * (middles[2:] - middles[:-2]))
+    result[1:-1] = np.where(known, np.minimum(off, lengths[1:-1]), lengths[1:-1])
     return result

@@ -54,7 +54,7 @@ def stick_zone_of(
     bound, change = growth or (history.bound, history.change)
     forces_of = partial(_forces_of, line, nodes)
     return read_stick_zone(
-        line.x[nodes], bound, change, line.x[:: line.order], forces_of, history.lasting, history.unsteady
+        line.x[nodes], bound, change, line.x[:: line.order], forces_of, history.lasting, history.unsteady, history.stuck
     )
 
 

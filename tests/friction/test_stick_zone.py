@@ -123,3 +123,42 @@ def test_an_end_in_a_narrow_strip_lies_between_the_nodes_that_stick_and_slip():
     zone = read_stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed)
     assert zone.right == pytest.approx(0.525, abs=1e-12)
     assert zone.strips == pytest.approx((0.0, 0.025), abs=1e-12)
+
+
+def test_an_end_that_came_back_between_two_nodes_lies_between_them():
+    """The first node that slips had stuck again before: the end turned round beside it. The kink of q where it did so
+    is nearer than the nodes tell."""
+    some = room(-0.31, 0.52)
+    changed, stuck = np.where(some > 0, np.nan, 0.9), np.full(len(X), np.nan)
+    before = read_stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed, None, stuck)
+    assert before.strips == (0.0, 0.0)
+    stuck[X > 0.525] = 0.5
+    zone = read_stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed, None, stuck)
+    assert zone.right == pytest.approx(0.525, abs=1e-12)
+    assert zone.strips == pytest.approx((0.0, 0.025), abs=1e-12)
+    assert zone.left == before.left
+
+
+@pytest.mark.fault
+def test_an_end_beside_nodes_with_unsteady_room_has_moved_outwards(monkeypatch):
+    """Under mean loads nodes beyond the end stick again, later than those within it, with room that is to vanish.
+    Deliberate fault: the last node that stuck again counts as one that slips on."""
+    distance = np.clip(0.52 - VERTICES, 0, None) * (VERTICES > -0.31)
+    some = -np.diff(distance**2.5)
+    some[X < -0.3] = 0
+    spread = np.where((X > 0.52) & (X < 0.6), 1e-7 * BOUND, 0.0)
+    changed = np.where(X > -0.31, np.clip(1 - (0.6 - X) / 2, None, 1.0), 0.0)
+
+    def read_again():
+        found = some + spread
+        unsteady = np.where(X > 0.52, 2 * found, 0.0)
+        return read_stick_zone(X, BOUND, 2 * BOUND - found, VERTICES, lambda forces: forces, changed, unsteady)
+
+    zone = read_again()
+    assert zone.moved[1]
+    assert zone.right == pytest.approx(0.52, abs=0.025 / 25)
+    power = zone_ends._power
+    monkeypatch.setattr(zone_ends, "_power", lambda changed, still, *nodes: power(changed, 0 * still, *nodes))
+    wrong = read_again()
+    assert not wrong.moved[1]
+    assert abs(wrong.right - 0.52) > 0.01

@@ -111,6 +111,11 @@ class _Done:
         """As of :meth:`Leg.changed`; None if the leg was taken in one step."""
         return self.leg.changed(self.leg.path > _SLIGHT * self.leg.path.max()) if self.leg else None
 
+    @property
+    def stuck(self) -> Array | None:
+        """Share of the leg at which each node last stuck again, (n,); nan where it never did."""
+        return self.leg.stuck if self.leg else None
+
 
 class _Contact:
     """Legs of a path in turn; arguments as for :func:`march`."""
@@ -281,6 +286,7 @@ class _Contact:
             around=Steps(ways, forces, self._normal[None], self._f, shifts),
             turns=path.in_phase and any(each.turns for each in last),
             changed=last[path.ends[1]].changed if path.in_phase else None,
+            stuck=last[path.ends[1]].stuck if path.in_phase else None,
             events=events,
         )
 

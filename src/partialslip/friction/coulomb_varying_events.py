@@ -122,8 +122,8 @@ class _Contact:
         shifts = joined([each.leg.shifts for each in last])
         bounds = self._f * pressures
         room = np.maximum((bounds - forces).min(axis=0) + (bounds + forces).min(axis=0), 0.0)
-        changed = np.full(self._count, np.nan)
-        changed[self._on] = last[path.ends[1]].changed
+        changed, stuck = np.full((2, self._count), np.nan)
+        changed[self._on], stuck[self._on] = last[path.ends[1]].changed, last[path.ends[1]].leg.stuck
         turns = path.in_phase and any(each.turns > self._few for each in last)
         return replace(
             history,
@@ -135,5 +135,6 @@ class _Contact:
             around=Steps((path.stages,) * len(last), forces, pressures, self._f, shifts),
             turns=turns,
             changed=changed if path.in_phase else None,
+            stuck=stuck if path.in_phase else None,
             events=sum(each.leg.events for each in self._legs),
         )

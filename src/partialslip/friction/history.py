@@ -74,6 +74,9 @@ class History:
     changed : (n,) array or None
         In phase: share of the leg to load point 2 at which a node last began to slip or to stick; nan where it did
         neither. None if the leg was not followed.
+    stuck : (n,) array or None
+        On the same leg: share at which a node last stuck again, whether or not it slipped once more; nan where it
+        never did.
     events : int
         Number of instants at which rates change, on legs that are followed.
     """
@@ -96,6 +99,7 @@ class History:
     held: Mask | None = None
     turns: bool = False
     changed: Array | None = None
+    stuck: Array | None = None
     events: int = 0
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "History":
@@ -107,7 +111,7 @@ class History:
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "pressures", "end")
         }
         fields["around"] = self.around.of(nodes)
-        some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed")}
+        some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed", "stuck")}
         fields |= {key: each[..., nodes] for key, each in some.items() if each is not None}
         return replace(self, points=points, **fields)
 

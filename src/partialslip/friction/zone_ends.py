@@ -9,7 +9,8 @@ Where the stick zone moves over nodes that have slipped, they stick again, and 2
 distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth.
 
 An end that came back into a narrow strip of such nodes lies between the last node that sticks and the first one that
-slips: a fit would reach across the kink of q at the other side of the strip.
+slips: a fit would reach across the kink of q at the other side of the strip. The strip may be narrower than the
+distance of two nodes: then no node lies in it, but the first one that slips had stuck again before.
 """
 
 import itertools
@@ -41,8 +42,8 @@ class StickInterval:
     right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are ends that moved,
     as the loads tell at which the nodes beside them stuck again; nan where no nodes did. ``strips`` are lengths
     beside the ends over which so few nodes slipped before that the end is read as if none had, or over which there is
-    hardly any room up to the bound; where more nodes slipped, but too few for a fit, the distance of the nodes between
-    which the end lies."""
+    hardly any room up to the bound; where more nodes slipped, but too few for a fit, or where none did although the end
+    had turned round, the distance of the nodes between which the end lies."""
 
     left: float
     right: float
@@ -60,6 +61,7 @@ def read_stick_zone(
     cell_forces: Callable[[Array], Array],
     changed: Array | None = None,
     unsteady: Array | None = None,
+    stuck: Array | None = None,
 ) -> StickInterval:
     """Stick zone of a cycle, from the room 2 f p - |dq| and not from the state at one load point.
 
@@ -75,8 +77,11 @@ def read_stick_zone(
         When nodes last began to slip or to stick; nan where they did neither, or do not in the steady state.
     unsteady : (n,) array, optional
         Room that counts as none.
+    stuck : (n,) array, optional
+        When nodes last stuck again, be it that they slipped once more; nan where they never did.
     """
     room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
+    still = room > _STICKS  # nodes whose room is unsteady stick again, too
     if unsteady is not None:
         room = np.where(room * bound <= unsteady, 0.0, room)
         change = np.where(room > 0, change, np.sign(change) * 2 * bound)
@@ -88,7 +93,7 @@ def read_stick_zone(
         point = float(x[max(turn - 1, 0)] + x[turn]) / 2
         return StickInterval(point, point, signs)
     rooms = (cell_forces(2 * bound - sign * change) for sign in signs)
-    powers = [_power(changed, sticks[:_RUN], first - 1), _power(changed, sticks[-_RUN:], last)]
+    powers = [_power(changed, still, sticks[:_RUN], first - 1), _power(changed, still, sticks[::-1][:_RUN], last)]
     left, right = (
         end_of(vertices, room, x[sticks], power)
         for end_of, room, power in zip((left_end, right_end), rooms, powers, strict=True)
@@ -106,10 +111,14 @@ def read_stick_zone(
     ends, strips = [left, right], [0.0, 0.0]
     for side, (inside, beyond) in enumerate(((sticks, first - 1), (sticks[::-1], last))):
         strips[side] = _flat(x, room, inside)
-        count = 0 if moved[side] or not 0 <= beyond < len(x) else _slipped(changed, inside)
-        if count and _vertices(x[inside[[0, count - 1]]], vertices) < _VERTICES:
+        if moved[side] or not 0 <= beyond < len(x):
+            continue
+        count = _slipped(changed, inside)
+        few = count > 0 and _vertices(x[inside[[0, count - 1]]], vertices) < _VERTICES
+        none = stuck is not None and bool(np.isnan(changed[inside[0]]) and stuck[beyond] < changed[beyond])
+        if few or none:
             ends[side] = float(x[inside[0]] + x[beyond]) / 2
-            apart = inside[count] if count <= _RUN else beyond
+            apart = inside[count] if 0 < count <= _RUN else beyond
             strips[side] = max(strips[side], abs(float(x[apart] - x[inside[0]])))
     left, right = ends
     return StickInterval(left, max(right, left), signs, moved, caught, (strips[0], strips[1]))
@@ -150,13 +159,14 @@ def _caught_up(x: Array, changed: Array, inside: Indices) -> float:
     return float(np.linalg.lstsq(np.vander(since / since.max(), 3), x[inside[:count]], rcond=None)[0][-1])
 
 
-def _power(changed: Array | None, inside: Indices, outside: int) -> float:
-    """Power of the force at an end of the stick zone with the nodes ``inside`` it and the node ``outside``: whether the
-    end has moved outwards, over nodes that slipped before."""
+def _power(changed: Array | None, still: Mask, inside: Indices, outside: int) -> float:
+    """Power of the force at an end of the stick zone with the nodes ``inside`` it, from the end on, and the node
+    ``outside``: whether the end has moved outwards, over nodes that slipped before. It has if the node outside sticks
+    ``still`` (n,), too, with room that counts as none."""
     if changed is None or not 0 <= outside < len(changed) or not np.isfinite(changed[inside]).all():
         return _ROOT
     since = np.nan_to_num(changed[[inside[0], inside[-1], outside]], nan=-1.0)
-    return _CAUGHT_UP if since[:2].max() > since[2] else _ROOT
+    return _CAUGHT_UP if still[outside] or since[:2].max() > since[2] else _ROOT
 
 
 def _sign(changes: Array, bounds: Array, outermost: float) -> int:

@@ -226,10 +226,12 @@ def _solve_level(
 
         def zone(of: History) -> StickInterval:
             if not of.path.presses_anew:
-                return read_stick_zone(x, of.bound, of.change, vertices, lambda values: values, of.lasting, of.unsteady)
+                known = of.lasting, of.unsteady, of.stuck
+                return read_stick_zone(x, of.bound, of.change, vertices, lambda values: values, *known)
             on = np.flatnonzero(of.bound > 0)
             here, forces = of.of(on), partial(spread, where=on, count=len(x))
-            found = read_stick_zone(x[on], here.bound, here.change, vertices, forces, here.lasting, here.unsteady)
+            known = here.lasting, here.unsteady, here.stuck
+            found = read_stick_zone(x[on], here.bound, here.change, vertices, forces, *known)
             return within(found, normal.common, vertices)
 
         def errors(of: History, gradual: History) -> dict[str, float]:
