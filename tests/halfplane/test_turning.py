@@ -44,13 +44,13 @@ def test_a_scene_has_one_answer():
     [("march", 0.0), ("fem", 0.0), ("fem", 1e-6), pytest.param("march", 1e-6, marks=pytest.mark.slow)],
 )
 def test_methods_agree_on_the_points_that_never_slip(method, more):
-    """To the size of a cell, also where the pressure varies a little."""
+    """Far below the size of a cell there, also where the pressure varies a little. Meshes are made for m and n."""
     of = scene(0.55, 7.0)
     if more:
         (Q1, Q2), (sigma1, sigma2), P = of.load.Q, of.load.sigma, of.P
         load = f"load={{P=[{P!r}, {P * (1 + more)!r}], Q=[{Q1!r}, {Q2!r}], sigma=[{sigma1!r}, {sigma2!r}]}}"
         of = partialslip.load_scene("hertz-shear", [load])
-    of = of.replace({"fem.accuracy": 2e-4})
+    of = of.replace({"fem.accuracy": 1e-4})
     found = partialslip.run(of, [method])[method]
     assert found.permanent is not None
     assert np.array(found.permanent) / found.a == pytest.approx(cycle(0.55, 7.0).permanent, abs=5e-4)
