@@ -71,7 +71,10 @@ def test_what_is_allowed_is_kept_and_buys_accuracy(counter):
     assert reached[0] > reached[1] > reached[2]
 
 
-@pytest.mark.parametrize("loads", [[], ["load.P=[100e3, 135750]"], ["material.upper={E=150e9, nu=0.3}"]])
+@pytest.mark.parametrize(
+    "loads",
+    [[], ["load.P=[100e3, 135750]"], pytest.param(["material.upper={E=150e9, nu=0.3}"], marks=pytest.mark.slow)],
+)
 def test_the_work_of_a_run_without_an_allowance_suffices_for_its_errors(counter, loads):
     """Load steps are refined and checked, and meshes made, as without an allowance."""
     scene = load_scene("fretting-aluminium", [*loads, "fem.accuracy=1e-3"])
