@@ -157,6 +157,7 @@ def test_an_end_beside_nodes_with_unsteady_room_has_moved_outwards(monkeypatch):
     zone = read_again()
     assert zone.moved[1]
     assert zone.right == pytest.approx(0.52, abs=0.025 / 25)
+    assert zone.strips[1] == pytest.approx(0.6 - zone.right, abs=1e-9)  # where the nodes say that it is
     power = zone_ends._power
     monkeypatch.setattr(zone_ends, "_power", lambda changed, still, *nodes: power(changed, 0 * still, *nodes))
     wrong = read_again()

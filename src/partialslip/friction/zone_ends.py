@@ -43,7 +43,8 @@ class StickInterval:
     as the loads tell at which the nodes beside them stuck again; nan where no nodes did. ``strips`` are lengths
     beside the ends over which so few nodes slipped before that the end is read as if none had, or over which there is
     hardly any room up to the bound; where more nodes slipped, but too few for a fit, or where none did although the end
-    had turned round, the distance of the nodes between which the end lies."""
+    had turned round, the distance of the nodes between which the end lies; where nodes beside an end that moved have
+    room that counts as none, the distance of both readings of the end."""
 
     left: float
     right: float
@@ -111,7 +112,11 @@ def read_stick_zone(
     ends, strips = [left, right], [0.0, 0.0]
     for side, (inside, beyond) in enumerate(((sticks, first - 1), (sticks[::-1], last))):
         strips[side] = _flat(x, room, inside)
-        if moved[side] or not 0 <= beyond < len(x):
+        if not 0 <= beyond < len(x):
+            continue
+        if moved[side]:
+            if still[beyond]:  # room that counts as none hides where the end is
+                strips[side] = float(np.fmax(strips[side], abs(caught[side] - ends[side])))
             continue
         count = _slipped(changed, inside)
         few = count > 0 and _vertices(x[inside[[0, count - 1]]], vertices) < _VERTICES
