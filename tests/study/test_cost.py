@@ -1,7 +1,9 @@
 """The study of cost: ladder, figures, results of other codes, and price list."""
 
+import importlib
 import json
 import math
+from types import SimpleNamespace
 
 import made
 import numpy as np
@@ -11,6 +13,7 @@ import partialslip
 from partialslip.batch.job import Job, ProcessCost, solve_apart
 from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
+from partialslip.cli import run as command
 from partialslip.cli.cost import _progress
 from partialslip.study.cost import ladder as cost
 from partialslip.study.cost import prices
@@ -240,6 +243,13 @@ def test_families_follow_bodies_and_loads():
     assert family(pad + ", support='pivot', pivot_height=1e-4}") == "pivot"
 
 
+def test_a_price_follows_no_gradual_way(monkeypatch):
+    """Which takes seconds where a zone inside slips: as many as the run."""
+    monkeypatch.setattr("partialslip.halfplane.turning.steady", lambda *_: pytest.fail("followed"))
+    turning = partialslip.load_scene("hertz-shear", ["load.Q=[-267035, 267035]", "load.sigma=[-9e8, 9e8]"])
+    assert prices.family(turning) == "slip turns round"
+
+
 def test_the_shipped_list_rises_with_accuracy():
     known = prices.load_prices()
     assert {*known.profiles} == {"hertz", "flat-rounded"}
@@ -256,6 +266,26 @@ def test_a_budget_needs_elements_that_follow_an_accuracy(refused, extra):
 def test_a_budget_below_the_least_price_is_refused_before_work_starts(monkeypatch, refused):
     monkeypatch.setattr(partialslip, "run", lambda *_, **__: pytest.fail("work has started"))
     assert "must be at least" in refused("run", "hertz-shear", "--budget", "0.01s")
+
+
+def test_what_the_choice_of_methods_takes_is_part_of_a_budget(monkeypatch, refused):
+    """The exact way is followed for it, which may take more than all else."""
+    clock, allowed = [0.0], []
+
+    def default_methods(_):
+        clock[0] += 100.0
+        return "exact", "fem"
+
+    def run(*_, **__):
+        raise partialslip.InputError("no run")
+
+    monkeypatch.setattr(command, "time", SimpleNamespace(process_time=lambda: clock[0]))
+    monkeypatch.setattr(importlib.import_module("partialslip.run"), "default_methods", default_methods)
+    monkeypatch.setattr(command, "Allowance", lambda rest, **_: allowed.append(rest))
+    monkeypatch.setattr(partialslip, "run", run)
+    refused("run", "hertz-shear", "--budget", "1000s")
+    known = prices.load_prices()
+    assert allowed == [pytest.approx(1000 - 100 - known.start - known.closing)]
 
 
 def test_a_price_is_told_and_the_accuracy_reached(tmp_path, capsys):

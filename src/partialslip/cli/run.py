@@ -88,8 +88,11 @@ def _run(options: argparse.Namespace) -> int:
     from partialslip.report import write_run
     from partialslip.run import default_methods
 
-    price = _price(options, scene, methods, budget)
-    priced_at, allowance = time.process_time(), None
+    priced, allowance = options.accuracy is not None or budget is not None, None
+    if priced:
+        import partialslip_fem.method  # noqa: F401 - imports count as start
+    began = time.process_time()
+    price = _price(options, scene, methods, budget, began) if priced else None
     chosen = sorted({*(methods or default_methods(scene))})
     known = {"methods": chosen, "start": options.start and Path(options.start)}
 
@@ -101,7 +104,7 @@ def _run(options: argparse.Namespace) -> int:
 
     with folder_if_wanted(options, "run", scene.name, scene, known, usual) as (folder, elsewhere):
         if price and budget:
-            rest = budget - price.closing_s - price.start_s
+            rest = budget - price.closing_s - price.start_s - (time.process_time() - began)
             allowance = Allowance(rest, finest=_finest(options), overdraft=_OVERDRAFT * budget)
         elif price:
             messages().print(str(price), soft_wrap=True, markup=False)
@@ -124,7 +127,7 @@ def _run(options: argparse.Namespace) -> int:
                 save = Path(options.save)
                 files += write_files(save.parent, {save.name: _state(outcome).save})
             files += write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
-    paid = _paid(price, budget, outcome, priced_at) if price else []
+    paid = _paid(price, budget, outcome, began) if price else []
     return print_outcome(outcome, options, files, paid, elsewhere)
 
 
@@ -155,15 +158,12 @@ def _accuracy(options: argparse.Namespace) -> list[str]:
 
 
 def _price(
-    options: argparse.Namespace, scene: "Scene", methods: list[str] | None, budget: float | None
-) -> "Price | None":
-    """Return the price of the scene, None without ``--accuracy`` and ``budget``."""
-    if options.accuracy is None and budget is None:
-        return None
-    import partialslip_fem.method  # noqa: F401 - imports count as start
+    options: argparse.Namespace, scene: "Scene", methods: list[str] | None, budget: float | None, began: float
+) -> "Price":
+    """Return the price of the scene; CPU seconds of the process up to ``began`` are those of its start."""
     from partialslip.study.cost.prices import load_prices
 
-    price = load_prices().price(scene, methods, time.process_time() if options.own_process else None)
+    price = load_prices().price(scene, methods, began if options.own_process else None)
     least = price.start_s + price.closing_s
     if budget is not None and budget < least:
         raise InputError(
@@ -180,12 +180,13 @@ def _finest(options: argparse.Namespace) -> float:
     return math.inf if any(each.startswith("fem.accuracy") for each in options.overrides) else FINEST
 
 
-def _paid(price: "Price", budget: float | None, outcome: "Run", priced_at: float) -> list[str]:
-    """Return lines with the predicted CPU seconds or the ``budget``, the actual seconds, and what they have led to."""
+def _paid(price: "Price", budget: float | None, outcome: "Run", began: float) -> list[str]:
+    """Return lines with the predicted CPU seconds or the ``budget``, the actual seconds, those since ``began`` after
+    the start, and what they have led to."""
     taken = (
         price.start_s
         + time.process_time()
-        - priced_at
+        - began
         + sum(result.cost.meshing_cpu_s for result in outcome.results.values())
     )
     fem = outcome.results.get("fem")

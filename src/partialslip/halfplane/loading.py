@@ -143,6 +143,12 @@ class Loading:
         return not self.turns_round
 
     @property
+    def final(self) -> bool:
+        """Whether there is no gradual way to look for: nothing changes, slip does not reverse, or the tension varies
+        along x, where none is known."""
+        return self.nothing or bool(self.gf) or self.holds
+
+    @property
     def one_way(self) -> bool:
         """Whether dq has one sign, so that gross sliding is all that bounds the mean of Q."""
         return self.zone.s > 0 and self.gf <= 0 and self.shape.convex

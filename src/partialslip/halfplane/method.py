@@ -119,9 +119,7 @@ def spacing_error(scene: Scene) -> dict[str, float]:
         return {}
     if scene.free or scene.slides or not plan(scene).needs("friction"):
         return table_error(scene, contact(scene), None)
-    pressed, load = contact(scene), scene.load
-    require_carried([Q for Q, _ in load.points], pressed.f * scene.P)
-    return table_error(scene, pressed, half_cycle(pressed, pressed.f, load.dQ, load.dsigma, load.dslope, parts=False))
+    return table_error(scene, *_half_cycle(scene, parts=False))
 
 
 def path_dependent(scene: Scene) -> bool:
@@ -134,8 +132,11 @@ def path_dependent(scene: Scene) -> bool:
 
 def slip_turns_round(scene: Scene) -> bool:
     """Whether slip reverses between the load points of ``scene``, two similar half-planes under constant P and loads in
-    phase."""
-    return may_turn_round(scene) and isinstance(_change(scene).cycle, Turning)
+    phase, decided by a single step: no gradual way is followed."""
+    if not may_turn_round(scene):
+        return False
+    pressed, load = contact(scene), scene.load
+    return not loading(pressed, pressed.f, load.dQ, load.dsigma, load.dslope, bound=2).final
 
 
 class _Change(NamedTuple):
@@ -152,10 +153,15 @@ def _change(scene: Scene) -> _Change:
     """Change from load point 1 to 2 of a ``scene`` that does not slide. Cached: :func:`path_dependent` is called before
     :func:`solve`."""
     cpu, wall = time.process_time(), time.perf_counter()
+    found = _half_cycle(scene)
+    return _Change(*found, time.process_time() - cpu, time.perf_counter() - wall)
+
+
+def _half_cycle(scene: Scene, *, parts: bool = True) -> tuple[Contact, Loading | Turning]:
+    """The contact, and its change over half a cycle, as of :func:`half_cycle`."""
     pressed, load = contact(scene), scene.load
     require_carried([Q for Q, _ in load.points], pressed.f * scene.P)
-    cycle = half_cycle(pressed, pressed.f, load.dQ, load.dsigma, load.dslope)
-    return _Change(pressed, cycle, time.process_time() - cpu, time.perf_counter() - wall)
+    return pressed, half_cycle(pressed, pressed.f, load.dQ, load.dsigma, load.dslope, parts=parts)
 
 
 def _steady_state(scene: Scene, plan: Plan, clock: Clock) -> tuple[Contact, Regime, Loading | Turning | None]:

@@ -226,7 +226,7 @@ def half_cycle(
         As :func:`partialslip.halfplane.loading.loading`.
     """
     once = loading(pressed, f, dQ, dsigma, dslope, bound=2)
-    if once.nothing or once.gf or once.holds:
+    if once.final:
         return once
     try:
         way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts)
