@@ -249,13 +249,12 @@ class _Refinement:
         expected = None
         if self.expense.limited:
             expected = self.expense.unknowns(grading, problem.order, self.block_width)
-        self.contact_s = self.clock.phases.get("contact", 0.0)
+        began = self.clock.phases["contact"]
         choose = self.step_errors is None and not self.path_errors and self.size <= goals.COARSEST
         self.solution = solving.mesh_and_solve(
             problem, self.block_width, grading, self.clock, None, choose, self.solution
         )
-        contact = self.clock.phases.get("contact", 0.0)
-        self.march_s = contact - self.contact_s - self.solution.choosing_s
+        self.march_s = self.clock.phases["contact"] - began - self.solution.choosing_s
         self.expense.measure(self.solution.dofs, self.solution.choosing_s, expected)
         if choose:
             self._keep_steps()

@@ -76,8 +76,7 @@ class Body:
         assert self.pull is not None
         if not len(self.gripped):
             return u
-        result: Array = u * (self.pull.sum() / (self.stiffness[self.gripped] @ u).sum())
-        return result
+        return u * (self.pull.sum() / (self.stiffness[self.gripped] @ u).sum())
 
     @property
     def weights(self) -> Array:

@@ -128,8 +128,7 @@ def _of_locked(solution: MeshSolution, other: MeshSolution, change: float) -> li
     assert solution.history
     strengths = _strengths(solution, [solution.history.change / 2], solution.zone_ends[2:4])[0]
     errors = locked_in(solution, other, strengths) / solution.half_width
-    result: list[float] = np.minimum(errors, _MOST * change).tolist()
-    return result
+    return np.minimum(errors, _MOST * change).tolist()
 
 
 def _within_elements(solution: MeshSolution, breaks: Sequence[float]) -> bool:
@@ -188,8 +187,7 @@ def _of_caught(solution: MeshSolution, sizes: Array) -> Array:
     apart = np.abs(np.subtract(solution.stick.caught, solution.zone_ends[2:4])) / solution.half_width
     # nodes that slip a little once more under mean loads stick again as well, and tell nothing of the end
     apart = np.where(np.isnan(apart), _SIDE * sizes, np.minimum(apart, sizes))
-    errors: Array = np.where(solution.stick.moved, _CAUGHT_UP * sizes + apart, 0.0)
-    return errors
+    return np.where(solution.stick.moved, _CAUGHT_UP * sizes + apart, 0.0)
 
 
 def rounding_error(solution: MeshSolution) -> float:
@@ -257,8 +255,7 @@ def kink_sizes(solution: MeshSolution, error: float) -> Array:
         return np.empty(0)
     norms = np.maximum(_norms(solution)[1:], np.finfo(float).tiny)
     relative = _KINK * _kink_strengths(solution) * solution.half_width * math.sqrt(len(solution.kinks)) / norms[:, None]
-    sizes: Array = error / np.maximum(relative.max(axis=0), np.finfo(float).tiny)
-    return sizes
+    return error / np.maximum(relative.max(axis=0), np.finfo(float).tiny)
 
 
 def _norms(solution: MeshSolution) -> Array:
@@ -266,8 +263,7 @@ def _norms(solution: MeshSolution) -> Array:
     history = solution.history
     assert history
     norms = [_norm(solution.shear(forces)) for forces in (history.change / 2, history.q1, history.q2)]
-    result: Array = np.maximum(norms, LEAST_SHEAR * _norm(solution.shear(history.bound)))
-    return result
+    return np.maximum(norms, LEAST_SHEAR * _norm(solution.shear(history.bound)))
 
 
 def _prefactors(solution: MeshSolution) -> dict[str, float]:

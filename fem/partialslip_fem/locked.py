@@ -72,14 +72,12 @@ def locked_in(solution: MeshSolution, other: MeshSolution, strengths: Array) -> 
 
 def _weight(at: Array) -> Array:
     """w at the distances ``at`` from the middle of the stick zone, in its half-widths."""
-    result: Array = np.sqrt(np.maximum(1 + at, 0.0) / np.maximum(1 - at, _TINY))
-    return result
+    return np.sqrt(np.maximum(1 + at, 0.0) / np.maximum(1 - at, _TINY))
 
 
 def _integral(at: Array) -> Array:
     """Integral of w over the distance, at the distances ``at`` from the middle of the stick zone, at most 1."""
-    result: Array = np.arcsin(at) - np.sqrt(np.maximum(1 - at**2, 0.0))
-    return result
+    return np.arcsin(at) - np.sqrt(np.maximum(1 - at**2, 0.0))
 
 
 def _differences(solution: MeshSolution, other: MeshSolution) -> tuple[Array, Array]:
@@ -128,8 +126,7 @@ def _waited(since: Array, first: Indices, last: Indices) -> Array:
     apart[1:-1][first[1:] > last[:-1] + 1] = np.nan
     every = np.append(0.0, np.unique(since[np.isfinite(since)]))
     before = instants - every[np.maximum(np.searchsorted(every, instants) - 1, 0)]
-    result: Array = np.fmin(np.fmin(apart[1:], apart[:-1]), before)
-    return result
+    return np.fmin(np.fmin(apart[1:], apart[:-1]), before)
 
 
 def _off_the_way(instants: Array, intervals: Array) -> Array:

@@ -113,8 +113,7 @@ class MeshSolution:
             return None
         first, last = self.history.slips[[0, -1]]
         sides = first & (x < self.stick.left), last & (x > self.stick.right)
-        signs: npt.NDArray[np.int8] = np.select(sides, self.stick.signs, 0).astype(np.int8)
-        return signs
+        return np.select(sides, self.stick.signs, 0).astype(np.int8)
 
     @property
     def wanders(self) -> bool:

@@ -61,8 +61,7 @@ class Data:
         """The data but for the rests, (4, points), relative to the curvature of the gap of ``scene``, its slope at the
         ends of the contact, and the mean pressure."""
         values = np.array([self.curvature, self.tilt, self.sigma, self.sigma_slope])
-        result: Array = values / _units(scene)
-        return result
+        return values / _units(scene)
 
     def moved(self, scaled: Array, scene: Scene) -> "Data":
         """These data with others in their place, ``scaled`` (4, points) as by :meth:`scaled`."""
@@ -128,8 +127,7 @@ def _shares(scene: Scene) -> Array:
     along = Q if np.ptp(Q) > 0 else sigma
     first, second = scene.load.ends
     way = along[second] - along[first]
-    shares: Array = (along - along[first]) / way if way else np.zeros_like(along)
-    return shares
+    return (along - along[first]) / way if way else np.zeros_like(along)
 
 
 def nodes() -> Array:
@@ -159,5 +157,4 @@ def _arc(scene: Scene, x: Array) -> Array:
         return np.zeros_like(x)
     step = _STEP * float(np.ptp(x))
     after, before = (scene.gap_at(x + by) - scene.profile.gap_at(x + by) for by in (step, -step))
-    result: Array = (after - before) / (2 * step)
-    return result
+    return (after - before) / (2 * step)

@@ -127,8 +127,7 @@ def _series(coefficients: Array) -> Callable[[Array], Array]:
 
     def function(x: Array) -> Array:
         angles = np.arccos(np.clip(x, -1.0, 1.0))
-        result: Array = np.sin(angles[..., None] * orders) @ coefficients
-        return result
+        return np.sin(angles[..., None] * orders) @ coefficients
 
     return function
 

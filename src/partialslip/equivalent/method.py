@@ -231,8 +231,7 @@ def _mixed(given: Sequence[Array], called: Sequence[Array]) -> Array:
     had, got = (np.array(each[-_MIXED:]).reshape(min(len(each), _MIXED), -1) for each in (given, called))
     left = got - had
     weights = np.linalg.lstsq((left[:-1] - left[-1]).T, -left[-1], rcond=1e-10)[0]
-    result: Array = (got[-1] + weights @ (got[:-1] - got[-1])).reshape(called[-1].shape)
-    return result
+    return (got[-1] + weights @ (got[:-1] - got[-1])).reshape(called[-1].shape)
 
 
 def _pressed(scene: Scene) -> Result:
@@ -266,5 +265,4 @@ def _added(rig: Rig, places: Array) -> Array:
     middle, half = (places[1:] + places[:-1]) / 2, np.diff(places) / 2
     powers = rig.powers((middle[:, None] + half[:, None] * nodes).ravel()).reshape(len(middle), len(nodes), -1)
     means = np.einsum("cgk,g->ck", powers, weights / 2)
-    result: Array = means @ rig.terms.xx @ means.T
-    return result
+    return means @ rig.terms.xx @ means.T

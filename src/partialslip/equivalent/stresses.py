@@ -64,8 +64,7 @@ class _Bodies:
     def _tensions(self, steps: Sequence[int]) -> Array:
         """Bulk tension at x = 0 and its slope that the bodies have besides that of the half-planes, (steps, 2)."""
         own, other = (np.array(scene.load.along)[:, 1:] for scene in (self.scene, self.seen))
-        found: Array = (own - other)[steps]
-        return found
+        return (own - other)[steps]
 
     def surface(self, x: Array) -> Array:
         """sigma_xx (2, 2, k), Pa, by body and load point at ``x`` (k,), m."""
@@ -114,8 +113,7 @@ def rests(scene: Scene, rig: Rig, moments: Moments) -> Complex:
     u[0] *= -1  # the lower body moves against u of the pair; along y both bodies move away from the other
     moved = u - 1j * v
     strains = moved[..., 1:] * np.arange(1, moved.shape[-1]) / rig.reach
-    result: Complex = np.swapaxes(4 / compliances * strains, 0, 1)
-    return result
+    return np.swapaxes(4 / compliances * strains, 0, 1)
 
 
 def _below(coefficients: Complex, z: Complex) -> Array:

@@ -175,8 +175,7 @@ class _Contact:
             return self._near
         if len(self.legs) > self._cycle:
             return self.legs[-self._cycle].found.sides
-        sides: Sides = -self.legs[-1].found.sides
-        return sides
+        return -self.legs[-1].found.sides
 
     def _one_step(self, start: Array, Q: float, change: Array, near: Sides | None) -> Solution:
         factored, bound = self.factored, self._bound

@@ -193,8 +193,7 @@ class History:
             falls, fell = before[0] - room, before[1] - before[0]
             more = np.divide(falls**2, fell - falls, out=np.zeros_like(room), where=(falls > 0) & (falls < fell))
             gone = np.where(2 * more > room, np.maximum(room, gone), gone)
-        result: Array = np.where(changed, gone, 0.0)
-        return result
+        return np.where(changed, gone, 0.0)
 
     def _moved_beside(self, ago: int) -> Array:
         """Largest change of q over a cycle, relative to the bound, of each node and its neighbours, (n,): over the last
@@ -235,8 +234,7 @@ class History:
         if self.slipped is None:
             return None
         most = self.slipped.sum(axis=0)
-        never: Mask = most <= _SLIPS * float(most.max())
-        return never
+        return most <= _SLIPS * float(most.max())
 
     @property
     def creeps(self) -> Mask | None:
@@ -245,8 +243,7 @@ class History:
         if self.slipped is None:
             return None
         forth, back = self.slipped
-        creeps: Mask = np.abs(forth - back) > _CREEPS * (forth + back)
-        return creeps
+        return np.abs(forth - back) > _CREEPS * (forth + back)
 
     @property
     def lasting(self) -> Array | None:
@@ -254,8 +251,7 @@ class History:
         None if this is not known."""
         if self.changed is None or self.creeps is None:
             return self.changed
-        result: Array = np.where(self.creeps, np.nan, self.changed)
-        return result
+        return np.where(self.creeps, np.nan, self.changed)
 
     @property
     def opposing(self) -> int:

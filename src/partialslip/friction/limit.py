@@ -40,5 +40,4 @@ def limit(states: Sequence[Array], bound: Array) -> Array | None:
     rest = np.abs(off[-1] - ratio * off[-2]).max()
     if not 0 < ratio < 1 or abs(ratio - before) > _STEADY * (1 - ratio) or rest > _CLEAN * np.abs(off[-1]).max():
         return None
-    result: Array = np.clip(states[-1] + (states[-1] - states[-2]) * ratio / (1 - ratio), -bound, bound)
-    return result
+    return np.clip(states[-1] + (states[-1] - states[-2]) * ratio / (1 - ratio), -bound, bound)

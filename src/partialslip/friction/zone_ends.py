@@ -195,8 +195,7 @@ def _around(most: int, x: Array, sticks: Mask, vertices: Array) -> Indices:
     slips[[0, -1]] = True  # beyond the contact line
     ends = np.flatnonzero(slips)
     last = np.searchsorted(ends, after[most])
-    result: Indices = np.flatnonzero(sticks & (after > ends[last - 1]) & (before < ends[last]))
-    return result
+    return np.flatnonzero(sticks & (after > ends[last - 1]) & (before < ends[last]))
 
 
 def within(stick: StickInterval, common: tuple[float, float], vertices: Array) -> StickInterval:
@@ -257,8 +256,7 @@ def turning_points(x: Array, never: Mask, slips: Mask) -> list[float]:
     turns = starts[1:][np.diff(never[starts])]
     ends = np.append(np.flatnonzero(np.diff(slips)) + 1, len(x) + _RUN)
     turns = turns[np.abs(turns[:, None] - ends).min(axis=1) > 1]
-    points: list[float] = ((x[turns - 1] + x[turns]) / 2).tolist()
-    return points
+    return ((x[turns - 1] + x[turns]) / 2).tolist()
 
 
 def finest(vertices: Array) -> list[float]:
@@ -270,8 +268,7 @@ def finest(vertices: Array) -> list[float]:
     wide = np.lib.stride_tricks.sliding_window_view(np.pad(smallest, _BESIDE, constant_values=np.inf), 2 * _BESIDE + 1)
     far = np.pad(widths, _BESIDE, mode="edge")
     larger = np.minimum(far[: len(smallest)], far[2 * _BESIDE + 1 :][: len(smallest)])
-    places: list[float] = vertices[1:-1][(smallest <= wide.min(axis=1)) & (smallest < _FINER * larger)].tolist()
-    return places
+    return vertices[1:-1][(smallest <= wide.min(axis=1)) & (smallest < _FINER * larger)].tolist()
 
 
 def apart(ends: Sequence[float], size: float, known: Sequence[float] = ()) -> list[float]:
@@ -369,5 +366,4 @@ def _roots(x: Array, y: Array) -> Array:
     q = -(b + math.copysign(math.sqrt(max(square, 0.0)), b)) / 2
     if square < 0 or q == 0:
         return np.empty(0)
-    roots: Array = x[0] + scale * np.array([c / q, q / a] if a else [c / q])
-    return roots
+    return x[0] + scale * np.array([c / q, q / a] if a else [c / q])

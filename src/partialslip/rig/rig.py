@@ -89,8 +89,7 @@ class Rig:
 
     def moments(self, x: Array, forces: Array) -> Array:
         """Moments sum (x/reach)^j F_j of ``forces`` (..., n) at ``x`` (n,), (..., k)."""
-        result: Array = forces @ self.powers(x)
-        return result
+        return forces @ self.powers(x)
 
     def powers(self, x: Array) -> Array:
         """Powers (x/reach)^j, (n, k), at ``x`` (n,), m."""
@@ -99,18 +98,15 @@ class Rig:
     def slopes(self, x: Array, coefficients: Array) -> Array:
         """Derivatives by x, (..., n), at ``x`` (n,), m, of polynomials with the ``coefficients`` (..., k)."""
         powers = np.arange(1, len(self.terms.xx))
-        result: Array = (coefficients[..., 1:] * powers) @ self.powers(x)[:, :-1].T / self.reach
-        return result
+        return (coefficients[..., 1:] * powers) @ self.powers(x)[:, :-1].T / self.reach
 
     def opening(self, p: Array, q: Array) -> Array:
         """Coefficients (..., k) of v/A under tractions with the moments ``p`` and ``q`` (..., k)."""
-        result: Array = p @ self.terms.yy + q @ self.terms.xy
-        return result
+        return p @ self.terms.yy + q @ self.terms.xy
 
     def shift(self, p: Array, q: Array) -> Array:
         """Coefficients (..., k) of u/A under tractions with the moments ``p`` and ``q`` (..., k)."""
-        result: Array = q @ self.terms.xx + p @ self.terms.xy.T
-        return result
+        return q @ self.terms.xx + p @ self.terms.xy.T
 
     def shares(self, p: Array, q: Array) -> tuple[Array, Array]:
         """Shares (2, ..., k) of the lower and the upper body in :meth:`shift` and in :meth:`opening` under tractions

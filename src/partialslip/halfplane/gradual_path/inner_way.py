@@ -202,8 +202,7 @@ class Way(Seen):
         if not self._near or progress[-1] > self._near[-1].progress + self._near[-1].length:
             return None
         ends = ways(self._near, progress)
-        result: Array = ends[:, 1:] - ends[:, :1]
-        return result
+        return ends[:, 1:] - ends[:, :1]
 
     def _tried(self, takes: bool, length: float, speeds: Array) -> Panel | None:
         """The next panel: up to a break, to where an interval has become narrower, or of a ``length``."""

@@ -234,8 +234,7 @@ def fit(runs: Iterable[Measured], machine: str) -> Prices:
     guess = np.concatenate([[0.0, 0.1, 0.1, sum(_POWERS) / 2], 0 * has[0], 0 * has[0]])
 
     def off(fitted: Array) -> Array:
-        difference: Array = np.concatenate([columns @ fitted - seconds, pull @ fitted])
-        return difference
+        return np.concatenate([columns @ fitted - seconds, pull @ fitted])
 
     fitted = least_squares(off, guess, bounds=(lower, upper), loss="soft_l1", f_scale=0.3).x
     logs, growths = fitted[4 : 4 + count].tolist(), fitted[4 + count :].tolist()
