@@ -1,15 +1,13 @@
 """The reference of a scene: one choice, and never a solution that is known not to hold."""
 
 from dataclasses import replace
-from functools import partial
 
 import pytest
 from known import EXACT, P0, SCENE, SHARE, F, P, result, traction
+from lost import lost_way
 
 import partialslip
 from partialslip import compare, load_scene
-from partialslip.halfplane import method
-from partialslip.halfplane.loading import loading
 from partialslip.judge import Outcome
 from partialslip.judge.reference import ALL_EFFECTS, reference, reference_among
 from partialslip.methods import METHODS, REFERENCES
@@ -30,12 +28,9 @@ REVERSING = [(0.55, 7), (0.6434668934976868, 8.670889385947003), (0.9975, 7.2), 
 
 
 @pytest.fixture(name="unknown")
-def gradual_loads_are_not_solved(monkeypatch):
-    """As if the way of gradual loads were not known where slip turns round."""
-    monkeypatch.setattr(method, "half_cycle", partial(loading, bound=2))
-    method._change.cache_clear()
-    yield
-    method._change.cache_clear()
+def gradual_loads_are_not_solved():
+    with lost_way():
+        yield
 
 
 @pytest.mark.parametrize(
