@@ -21,16 +21,15 @@ DOCS = Path(__file__).parent
 MEASURED = DOCS.parent / "benchmarks" / "hard_cases.csv"
 COLUMNS = ("case", "method", "a", "m", "n", "p", "q", "certificate", "cpu_s", "machine", "date")
 
-_TOLD = """
-## Loads, and what was measured
-
+_TOLD = """\
 One run of `partialslip verify --suite full` on a busy machine with two cores ({machine}), {date}; other work made its
 CPU seconds longer. *Q_f* is dQ/(2 f P) and *s_f* is dsigma/(f p0), with the larger P where P varies and the largest f
 where f varies; both have a sign. The half-width of the contact is 1 mm, E is 72.8 GPa. The profile is Hertz, or a flat
 of half-width b with round corners. *m* and *n* are errors against the reference, in a; the method without errors is the
 reference. A dash: not judged, no such quantity, or not in the run. CPU seconds are those of the solution, without the
 start of the process. The largest residual of all certificates in the run is {certificate:.0e}; the bar is 1e-7.
-
+"""
+_HEAD = """\
 | case | Q_f | s_f | f | nu | profile | more | method | m | n | CPU s |
 |---|---|---|---|---|---|---|---|---|---|---|
 """
@@ -45,11 +44,8 @@ def page() -> str:
     cases = [case for family in FAMILIES for case in family.cases]
     lines = [line for case in cases for line in _lines(case, rows)]
     date = max(row["date"] for row in rows.values())
-    told = _TOLD.format(machine=machine, certificate=largest, date=date)
-    head, table = told.split("\n\n| case")
-    title, text = head.strip().split("\n\n")
-    told = f"\n{title}\n\n{fill(text, 120, break_on_hyphens=False)}\n\n| case{table}"
-    return catalogue_page() + told + "\n".join(lines) + "\n"
+    told = fill(_TOLD.format(machine=machine, certificate=largest, date=date), 120, break_on_hyphens=False)
+    return "\n".join([catalogue_page(), "## Loads, and what was measured", "", told, "", _HEAD + "\n".join(lines), ""])
 
 
 def _lines(case: Case, rows: Mapping[tuple[str, str], Mapping[str, str]]) -> Iterable[str]:

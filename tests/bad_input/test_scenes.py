@@ -43,7 +43,7 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         ("E =", "E = -inf", "material.E = -inf: must be finite"),
         ("E =", "E = 1e400", "material.E = inf: must be finite"),
         ("E =", 'E = "72e9"', "material.E = '72e9': must be a number, not a string"),
-        ("E =", "E = true", "material.E = True: must be a number, not true or false"),
+        ("E =", "E = true", "material.E = true: must be a number, not true or false"),
         ("E =", "E = [1.0]", "material.E = [1.0]: must be a number, not an array"),
         ("E =", "E = {x = 1}", "material.E = {'x': 1}: must be a number, not a table"),
         ("E =", "E = 1979-05-27", "material.E = 1979-05-27: must be a number, not "),
@@ -65,7 +65,7 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         ("R =", "R = 1e99", "load.p0 = 400000000.0: must give P and sqrt(A R P) from 1e-100 to 1e+100"),
         # words
         ("plane =", 'plane = "plain"', "material.plane = 'plain': must be one of 'strain', 'stress'"),
-        ("plane =", "plane = 1", "material.plane = 1: must be a string"),
+        ("plane =", "plane = 1", "material.plane = 1: must be 'strain' or 'stress', not a whole number"),
         ("kind =", 'kind = "wedge"', "profile.kind = 'wedge': must be one of 'hertz'"),
         ("kind =", "kind = []", "profile.kind = []: must be a string"),
         ("title =", "title = 3", "title = 3: must be a string"),

@@ -114,7 +114,7 @@ def test_a_run_goes_on_from_a_state(tmp_path):
             r"right_grip = 0.2: must be 'stiffness' or left out with load.displacement",
         ),
         (grip("glued"), r"bodies.lower.right_grip = 'glued': must be a number or 'stiffness'"),
-        (grip(True), r"bodies.lower.right_grip = True: must be a number or a string, not true or false"),
+        (grip(True), r"bodies.lower.right_grip = true: must be a number or 'stiffness', not true or false"),
         (
             grip("stiffness") | {"bodies.lower.pulled": False},
             r"bodies.lower.right_grip = 'stiffness': must be given only with pulled = true$",

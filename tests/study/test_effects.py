@@ -400,6 +400,7 @@ def test_ledger_of_effects(tmp_path, capsys):
     exact = partialslip.run(load_scene("fretting-aluminium"), ["exact"]).results["exact"]
     without = partialslip.run(load_scene("fretting-aluminium", ["load.sigma=[0, 0]"]), ["exact"]).results["exact"]
     assert entries["tension"]["changes"]["m"] == pytest.approx(abs(exact.m - without.m) / exact.a, rel=0.1)
+    assert entries["friction"]["changes"]["q"] == pytest.approx(1, rel=1e-12)  # relative to q, not to p
     for effect in ("history", "coupling", "subsurface"):
         assert max(entries[effect]["changes"].values()) < 1e-10
     assert entries["normal"]["refused"]

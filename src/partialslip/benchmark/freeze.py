@@ -1,4 +1,4 @@
-"""Targets: values that two independent methods agree on, with their uncertainty."""
+"""Targets: values that two methods find, with their uncertainty. The methods share code (docs/howto/benchmark.md)."""
 
 import math
 from collections.abc import Callable, Mapping

@@ -28,7 +28,8 @@ def files(problem: Problem) -> dict[str, bytes]:
 
     ``model.json``: bodies, supports and load steps in SI units. ``lower`` and ``upper`` with .msh, .inp, .med (if h5py
     is installed) and .vtu: a body's mesh of quadrilaterals, in m, with the groups contact, face, back, left, right
-    and, if there is a holder, flanks. ``calculix-mortar.inp``, ``calculix-penalty.inp`` and ``abaqus.inp``: decks.
+    and, if there is a holder, flanks. ``calculix-mortar.inp``, ``calculix-penalty.inp`` and ``abaqus.inp``: decks,
+    of which this project has run those of CalculiX alone.
     ``moose-untested`` (.i, .msh) and ``code_aster-untested`` (.comm, .mail, .export): decks that nobody of this project
     has run, where they carry the loads. None where the problem cannot be exported.
     """

@@ -1,4 +1,4 @@
-"""partialslip benchmark: numbered problems with frozen targets, for any code."""
+"""partialslip benchmark: numbered problems with frozen targets, for contact codes."""
 
 import argparse
 from pathlib import Path
@@ -31,9 +31,9 @@ def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     benchmark = commands.add_parser(
         "benchmark",
-        help="numbered problems with frozen targets, for any code",
+        help="numbered problems with frozen targets, for contact codes",
         description="List the problems of the benchmark, answer them with a method of partialslip, score the answers "
-        "of any code, check them before they are handed in, or write the book.",
+        "of a code, check them before they are handed in, or write the book.",
         examples=[
             "partialslip benchmark list",
             "partialslip benchmark score my-answers",
@@ -46,8 +46,9 @@ def add(commands: Commands) -> None:
                              examples=["partialslip benchmark list", "partialslip benchmark list --help"])  # fmt: skip
     lists.set_defaults(command=_list)
 
-    runs = parts.add_parser("run", help="answer problems with a method of partialslip",
-                            description="Answer problems with a method of partialslip, and write the answers.",
+    runs = parts.add_parser("run", help="answer problems with a method of partialslip or an installed code",
+                            description="Answer problems with a method of partialslip, or with another code that is "
+                            "installed, and write the answers.",
                             unjudged=_LACKING,
                             examples=["partialslip benchmark run --code exact",
                                       "partialslip benchmark run --code fem-1e-4 --problems PS-0*"])  # fmt: skip
@@ -88,18 +89,18 @@ def add(commands: Commands) -> None:
                               "Print a line for each thing that is wrong, or the grades.",
                               unjudged=_LACKING,
                               examples=["partialslip benchmark check my-answers",
-                                        "partialslip benchmark check results/benchmark-march"])  # fmt: skip
+                                        "partialslip benchmark check benchmarks/submissions/my-code"])  # fmt: skip
     checks.add_argument("folder", metavar="FOLDER", help="folder with the answers")
     checks.set_defaults(command=_check)
 
     builds = parts.add_parser("build", help="write the book",
-                              description="Write the book of problems as HTML and PDF, a zip of plain data, meshes and "
-                              "decks, and a scoreboard and badges of the given answers.",
+                              description="Write the book of problems, book.html and book.pdf, a zip of plain data, "
+                              "meshes and decks, and a scoreboard and badges of the given answers.",
                               examples=["partialslip benchmark build",
                                         "partialslip benchmark build my-answers results/benchmark-march"])  # fmt: skip
     builds.add_argument("folders", nargs="*", default=[], metavar="FOLDER", help="folders with answers")
     builds.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
-    add_pdf(builds)
+    add_pdf(builds, "refuse if WeasyPrint is missing; without --pdf, book.pdf is then left out")
     add_out(builds, "results/benchmark[-HASH]")
     builds.set_defaults(command=_build, overrides=[])
 

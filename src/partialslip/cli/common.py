@@ -75,9 +75,9 @@ def columns_of(text: str | None) -> dict[str, str] | None:
     return {name.strip(): made.strip() for name, _, made in pairs}
 
 
-def add_pdf(parser: argparse.ArgumentParser) -> None:
-    """Add ``--pdf`` to ``parser``."""
-    parser.add_argument("--pdf", action="store_true", help="also write the report as report.pdf, A4")
+def add_pdf(parser: argparse.ArgumentParser, told: str = "also write the report as report.pdf, A4") -> None:
+    """Add ``--pdf`` to ``parser``; ``told`` is its help."""
+    parser.add_argument("--pdf", action="store_true", help=told)
 
 
 def origin(options: argparse.Namespace) -> "Made":

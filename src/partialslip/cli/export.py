@@ -25,8 +25,8 @@ def add(commands: Commands) -> None:
     )
     add_scene(exports)
     exports.add_argument("--to", required=True, choices=_TO,
-                         help="calculix, abaqus: an input deck, ready to run; gmsh: the meshes of both bodies; moose, "
-                         "code-aster: an archive with a deck that this project has never run")  # fmt: skip
+                         help="calculix: an input deck; gmsh: the meshes of both bodies; abaqus: an input deck, and "
+                         "moose, code-aster: an archive with a deck, that this project has never run")  # fmt: skip
     exports.add_argument("--size", metavar="H", default=0.05,
                          help="element size along the contact, in contact half-widths, if P varies in those of the "
                          "smallest contact (default: 0.05)")  # fmt: skip

@@ -1,4 +1,4 @@
-"""partialslip map: draw the stick zones over all loads."""
+"""partialslip map: draw the stick zones over the loads."""
 
 import argparse
 from pathlib import Path
@@ -13,9 +13,9 @@ def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     maps = commands.add_parser(
         "map",
-        help="draw the stick zones over all loads",
-        description="Draw the stick zones of a profile over all loads: map.svg, ends.svg and map.csv; over dP and dQ "
-        "if P varies: map.svg and map.csv. Mark the loads of the scene, and print the scene's regime and stick zone.",
+        help="draw the stick zones over shear and tension",
+        description="Draw the stick zones of a profile over dQ and dsigma: map.svg, ends.svg and map.csv; over dP and "
+        "dQ if P varies: map.svg and map.csv. Mark the loads of the scene, and print its regime and stick zone.",
         examples=["partialslip map", "partialslip map flat-rounded", "partialslip map my-scene.toml --out maps"],
     )
     told = "a shipped scene or a TOML file, with the profile to map and the loads to mark (default: Hertz)"

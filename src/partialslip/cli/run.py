@@ -38,8 +38,8 @@ def add(commands: Commands) -> None:
     runs = commands.add_parser(
         "run",
         help="solve a scene, compare the methods, write the report",
-        description="Solve a scene exactly and by finite elements, print the errors, and write report.html, "
-        "results.json and tractions.csv.",
+        description="Solve a scene by finite elements and, where an exact solution is known, exactly. Print the "
+        "errors, and write report.html, results.json and tractions.csv.",
         examples=[
             "partialslip run fretting-aluminium",
             "partialslip run my-scene.toml --set load.Q=[-30e3,30e3] --accuracy 1e-6",
@@ -50,8 +50,8 @@ def add(commands: Commands) -> None:
     )
     add_scene(runs)
     runs.add_argument("--with", dest="methods", metavar="METHODS",
-                      help="methods of exact, march, fem and equivalent, separated by commas (default: exact,fem; "
-                      "march,fem if Q and sigma are out of phase)")  # fmt: skip
+                      help="methods of exact, march, fem and equivalent, separated by commas (default: fem and, of "
+                      "half-planes, the reference: exact where it is known, else march)")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
                       help="accuracy of a, m and n, as a fraction of a; tells the predicted CPU seconds where they are "
                       "known")  # fmt: skip

@@ -32,8 +32,9 @@ def add(commands: Commands) -> None:
     scores = commands.add_parser(
         "score",
         help="compare tractions of another code with the reference",
-        description="Compare tractions of another code with the exact ones. The file is a table, CalculiX results or a "
-        "mesh with point data. Output: the table, page and files of partialslip run.",
+        description="Compare tractions of another code with the reference: the exact solution where it is known, else "
+        "march or fem. The file is a table, CalculiX results or a mesh with point data. Output: the table, page and "
+        "files of partialslip run.",
         examples=[
             "partialslip score fretting-aluminium --template > mine.csv",
             "partialslip score fretting-aluminium mine.csv --bar 1e-2",
@@ -44,7 +45,8 @@ def add(commands: Commands) -> None:
     )
     add_scene(scores)
     scores.add_argument("file", metavar="FILE", nargs="?",
-                        help="tractions: a table (.csv, .txt, .tsv, .rpt), or .frd, .dat, .vtu")  # fmt: skip
+                        help="tractions: a table (.csv, .txt, .tsv, .rpt), .frd or .dat, or .vtu, .vtk, .xdmf, .xmf, "
+                        ".msh, .med, .e, .exo or .ex2")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
     scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
                         help="multiply x, p and q by these factors, after the units of the scene or of the columns: "

@@ -34,9 +34,9 @@ def export(
 ) -> Callable[[Path], None]:
     """Return a function that writes ``scene`` to a path, for another code.
 
-    The file has the meshes of both bodies; for calculix and abaqus also contact and load steps, ready to run. For moose
-    and code-aster it is an archive of the files of a deck, which nobody of this project has run. It is in the scene's
-    units (:attr:`Scene.shown_in`); for calculix the unit of length may be smaller, as its comments say.
+    The file has the meshes of both bodies; for calculix and abaqus also contact and load steps. For moose and
+    code-aster it is an archive of the files of a deck. This project has run decks for CalculiX alone. The file is
+    in the scene's units (:attr:`Scene.shown_in`); for calculix the unit of length may be smaller, as its comments say.
 
     Parameters
     ----------

@@ -1,9 +1,12 @@
-"""Input deck for Abaqus/Standard: plane strain, depth 1, so that forces are per unit depth."""
+"""Input deck for Abaqus/Standard: plane strain, depth 1, so that forces are per unit depth.
+
+This project has never run it."""
 
 from partialslip.export.deck import FRAME, bodies, deck_heading, frame_of, load_step
 from partialslip.export.model import Model
 from partialslip.scene import Scene
 
+_UNTESTED = "** untested: made from the documentation of Abaqus, never run by this project"
 _RESULTS = """\
 *CONTACT PRINT, SLAVE=LOWER_FACE, MASTER=UPPER_FACE, FREQUENCY=1000
 CSTRESS
@@ -22,7 +25,7 @@ def abaqus_deck(scene: Scene, model: Model) -> list[str]:
     Elements CPE4; small sliding, surface to surface; hard contact enforced directly; friction by Lagrange multipliers.
     At the end of each step contact stresses and nodal contact forces go to the .dat and the .odb file.
     """
-    lines = ["*HEADING", scene.name, *deck_heading(scene, model, f"Abaqus deck in {scene.units.words}")]
+    lines = ["*HEADING", scene.name, _UNTESTED, *deck_heading(scene, model, f"Abaqus deck in {scene.units.words}")]
     model = model.in_units(scene.units)
     blocks, (lower, upper) = bodies(model, "CPE4", "\n1.,")
     lines += [*blocks, "*SURFACE INTERACTION, NAME=INTERFACE", "1."]

@@ -98,8 +98,8 @@ def solve(
 
 
 def has_closed_form(scene: Scene) -> bool:
-    """Whether the steady state of ``scene``, two similar half-planes under loads in phase, has a closed form: always
-    under constant pressure, unless sigma_slope is too large."""
+    """Whether the steady state of ``scene``, two similar half-planes under loads in phase, has an exact solution here:
+    by formulas, quadratures or an integral equation; under constant pressure unless sigma_slope is too large."""
     if not ((scene.presses_anew or scene.load.dslope) and plan(scene).needs("friction")):
         return True
     try:

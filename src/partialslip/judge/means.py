@@ -21,7 +21,8 @@ def cell_errors(traction: Traction, reference: Traction, f: float = 0.0) -> tupl
     traction, reference : Traction
         Tractions of the result and of the reference.
     f : float, optional
-        Coefficient of friction. The error of q is relative to the larger of q's norm and 1e-3 of f p's norm.
+        Coefficient of friction. The error of q is relative to the larger of q's norm and 1e-3 of f p's norm; if f is 0,
+        to the larger of the norms of q and p.
     """
     errors = norm_errors(traction, reference, f, ("p", "q"))
     return errors["p"], errors["q"]

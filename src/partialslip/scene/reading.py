@@ -332,15 +332,14 @@ def _allowed(what: str, kind: Any) -> str:
         return "one of " + ", ".join(
             repr(table.__struct_config__.tag) for table in get_args(Scene.__annotations__["profile"])
         )
+    words = [word for option in (kind, *get_args(kind)) for word in get_args(option) if isinstance(word, (str, int))]
     if what.startswith("Invalid enum value"):
-        words = [
-            word for option in (kind, *get_args(kind)) for word in get_args(option) if isinstance(word, (str, int))
-        ]
         numbers = any(getattr(option, "__origin__", option) is float for option in get_args(kind))
         return ("a number or " if numbers else "one of ") + ", ".join(map(repr, words))
     if length := re.fullmatch(r"Expected `array` of length (>=|<=) (\d+)", what):
         return f"an array of at {'least' if length[1] == '>=' else 'most'} {length[2]} numbers"
-    if told := wanted(what, _KINDS):
+    strings = [repr(word) for word in words if isinstance(word, str)]
+    if told := wanted(what, _KINDS | ({"str": " or ".join(strings)} if strings else {})):
         return told
     if what == "Number out of range":
         return f"of a size from {SMALLEST} to {LARGEST}"
@@ -373,6 +372,8 @@ def _shown(value: Any) -> str:
     """A value, or a name, in at most 60 characters."""
     if type(value) is int and value.bit_length() > _BITS:
         return f"a whole number of {value.bit_length()} bits"
+    if isinstance(value, bool):
+        return str(value).lower()  # as a scene file has it
     text = repr(value) if isinstance(value, (int, float, list, dict)) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."
 

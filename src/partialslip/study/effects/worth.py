@@ -148,7 +148,7 @@ def _entry(scene: Scene, own: Plan, result: Result, effect: Effect) -> SwitchedE
         return SwitchedEffect(effect, on, why, str(refusal), {}, alone)
     with_it, without = (result, other) if on else (other, result)
     costs = {key: (cost, _costs(without)[key]) for key, cost in _costs(with_it).items()}
-    return SwitchedEffect(effect, on, why, "", _changes(with_it, without), costs)
+    return SwitchedEffect(effect, on, why, "", _changes(with_it, without, scene.friction.f), costs)
 
 
 def _measured(scene: Scene) -> Result:
@@ -165,12 +165,12 @@ def _solve(scene: Scene) -> Result:
     return result
 
 
-def _changes(on: Result, off: Result) -> dict[str, float | None]:
+def _changes(on: Result, off: Result, f: float) -> dict[str, float | None]:
     changes: dict[str, float | None] = {"a": abs(off.a - on.a) / on.a}
     for key in ("m", "n"):
         here, there = getattr(on, key), getattr(off, key)
         changes[key] = None if here is None or there is None else abs(there - here) / on.a
-    _, changes["q"] = cell_errors(off.traction, on.traction)
+    _, changes["q"] = cell_errors(off.traction, on.traction, f)
     changes["q2"] = _apart(on, off)
     return changes
 
