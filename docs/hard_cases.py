@@ -62,7 +62,7 @@ def _lines(case: Case, rows: Mapping[tuple[str, str], Mapping[str, str]]) -> Ite
 def _loads(scene: Scene) -> list[str]:
     """Q_f, s_f, f, nu, profile of ``scene``, and what else is special of it."""
     pressed, load, f = contact(scene), scene.load, scene.friction.f
-    Q, sigma = np.array(load.Q) / (f * pressed.P), np.array(load.sigma) / (f * pressed.p0)
+    Q, sigma = np.array(load.Q or (0.0, 0.0)) / (f * pressed.P), np.array(load.sigma) / (f * pressed.p0)
     share, tension, mean_Q, mean_sigma = (Q[1] - Q[0]) / 2, sigma[1] - sigma[0], Q.mean(), sigma.mean()
     more = []
     if max(abs(mean_Q), abs(mean_sigma)) > 1e-9:
@@ -73,14 +73,30 @@ def _loads(scene: Scene) -> list[str]:
         more.append("at " + ", ".join(f"{place / pressed.a:g}" for place in scene.friction.x) + " a")
     if np.size(load.e) > 1:
         more.append(f"e of {max(load.e) / pressed.a:.3g} a")
+    more += _rig(scene)
     if scene.fem.size:
         more.append(f"elements {scene.fem.size:g} a")
-    near = f"1 - {1 - share:.0e}" if 0.99 < share < 1 else f"{share:.3g}"
+    known = load.displacement is None
+    near = "found" if not known else f"1 - {1 - share:.0e}" if 0.99 < share < 1 else f"{share:.3g}"
     given = scene.friction.given
     frictions = ", ".join(f"{each:g}" for each in given) if isinstance(given, tuple) else f"{given:g}"
     b = getattr(scene.profile, "b", None)
     profile = f"flat, b = {b / pressed.a:.4g} a" if b else "Hertz"
     return [near, f"{tension:.4g}", frictions, f"{scene.material.nu:g}", profile, "; ".join(more)]
+
+
+def _rig(scene: Scene) -> Iterable[str]:
+    """What moves and holds finite bodies."""
+    load, bodies = scene.load, (scene.bodies.upper, scene.bodies.lower)
+    if load.displacement is not None:
+        yield f"plates moved by {max(load.displacement):g} m"
+    if load.spring:
+        yield f"spring of {load.spring:g} Pa"
+    for body in bodies:
+        if getattr(body, "pivot_height", None) is not None:
+            yield f"pin at height {body.pivot_height:g}"
+        if getattr(body, "right_grip", None) is not None:
+            yield f"right grip {body.right_grip}"
 
 
 def measured(folder: Path) -> str:

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from partialslip.benchmark import Problem, Submission, read_problems, read_submission, scoreboard, standing
+from partialslip.benchmark import Answer, Problem, Submission, read_problems, read_submission, scoreboard, standing
 from partialslip.benchmark.codes import CODES, Own
-from partialslip.benchmark.grade import best_grade
+from partialslip.benchmark.grade import Mark, best_grade, graded
 from partialslip.benchmark.measured import GROUPS
 from partialslip.benchmark.problem import EDITION
 from partialslip.halfplane import contact
@@ -52,6 +52,11 @@ NAMES = {  # short titles of the problems, as rows have at most 120 characters
     "PS-27": "slip turns round",
 }
 COLUMNS = 4  # codes of partialslip side by side
+EQUAL = (  # ours, size of its elements in a, and codes that have elements of this size and order along the contact
+    ("partialslip fem-P1", 0.1, ("kratos",)),
+    ("partialslip fem-P1", 0.05, ("calculix-mortar", "calculix-penalty")),
+    ("partialslip fem-P2", 0.05, ("getfem",)),
+)
 PLACE = -0.8  # x/a, as in benchmarks/peers/increments.py
 
 _HEAD = """\
@@ -66,14 +71,14 @@ all codes, with adapters of its own; their authors did not tune them.
 **One clock.** CPU seconds of CalculiX, GetFEM and Kratos are those of their whole process, without the meshes, which
 partialslip makes. Seconds of partialslip's methods were measured in a process that was warm. The first number is the
 solution, meshes included (P1 and P2: of the finest mesh); the second is a whole process, solution and start. Only whole
-processes should be compared between codes. The start is {starts} CPU s: Python and libraries, measured on another, busy
-machine ({machine}; `benchmarks/start.py`) than the answers ({others}), which other work shared, too. For
-[the cost of accuracy](cost.md) it was 0.65 s. CalculiX solves slices of three dimensions, two layers of nodes held in
-plane strain: twice the unknowns that a plane code has on the same mesh. The answers are in `benchmarks/submissions`.
+processes should be compared between codes. The start is {starts} CPU s: Python and libraries, measured on a busy
+machine ({machine}; `benchmarks/start.py`). The answers were measured on two ({others}), which other work shared, too.
+For [the cost of accuracy](cost.md) it was 0.65 s. CalculiX solves slices of three dimensions, two layers of nodes held
+in plane strain: twice the unknowns that a plane code has on the same mesh. The answers are in `benchmarks/submissions`.
 
-The last table has, for each code, the number of problems that count (every target of contact, stick and tractions has a
-value), and the worst grade of each group of targets. "1 not offered": one problem with other values lacks values of the
-group.
+The table below them has, for each code, the number of problems that count (every target of contact, stick and tractions
+has a value), and the worst grade of each group of targets. "1 not offered": one problem with other values lacks values
+of the group.
 
 """
 
@@ -113,6 +118,24 @@ in these versions with these settings and meshes.
 - **partialslip.** Linear and quadratic elements of one size (P1, P2) lose a grade or two where the contact has corners
   (PS-10, PS-11) and where nu = 0.4999 (PS-14). The marching method has the exact pressure, so its errors are those of q
   alone.
+"""
+
+_EQUAL = """
+## At equal resolution
+
+Methods of partialslip that are asked for an accuracy choose their meshes; the other codes have elements of one size
+along the contact. Here partialslip has elements of one size, too: linear ones beside Kratos and CalculiX, quadratic
+ones beside GetFEM. A cell has the largest error among the targets of contact, stick and tractions, in the scales of the
+targets, the target that it is of, and the CPU seconds of a whole process. Rows that no other code answers are left out.
+Two things are not equal. At the corners of the flat (PS-10, PS-11) the meshes of the other codes are finer than along
+the rest of the contact, and ours are not. And the seconds are those of two machines (above).
+
+{tables}
+
+**What to learn from it.** Where a code converges, its elements are about as good as ours of the same size, and often a
+little better: the largest error is that of the last elements beside the ends of contact and stick zone. What the first
+tables show for partialslip comes from where its meshes have small elements, and from loads that it follows without
+increments.
 """
 
 _ROW = "| " + " | ".join(["{}"] * 10) + " |"
@@ -160,14 +183,14 @@ def page() -> str:
     tables = [_table(problems, part, first) for part, first in zip(parts, firsts, strict=True)]
     runs = [json.loads(line) for line in INCREMENTS.read_text("utf-8").splitlines()]
     table = _increments(problems["PS-27"], runs)
-    return _head(found) + "\n".join([*tables, _standings([*own, *others])]) + _WRONG + table
+    return _head(found) + "\n".join([*tables, _standings([*own, *others])]) + _equal(problems, found) + _WRONG + table
 
 
 def _head(found: Sequence[Submission]) -> str:
     """Head of the page: what the grades and the seconds of the codes ``found`` are."""
     told = _start()
     starts = ", ".join(f"{seconds:.2g} ({method})" for method, seconds in told["start"].items())
-    machines = ", ".join(sorted({each.meta.machine for each in found}))
+    machines = "; ".join(sorted({each.meta.machine for each in found}))
     text = _HEAD.format(edition=EDITION, starts=starts, machine=told["machine"], others=machines)
     return "\n\n".join(fill(part, 120, break_on_hyphens=False) for part in text.strip().split("\n\n")) + "\n\n"
 
@@ -205,6 +228,57 @@ def _end(found: float | None, value: float) -> tuple[str, str]:
     if found is None:
         return "–", "–"
     return f"{found:.4f}", f"{abs(found - value):.1e}" if found != value else "0"
+
+
+def _equal(problems: Mapping[str, Problem], found: Sequence[Submission]) -> str:
+    """Tables of the codes that have elements of one size along the contact, beside ours of that size."""
+    by_name = {each.meta.code: each for each in found}
+    parts = []
+    for ours, size, others in EQUAL:
+        codes = [_rung(by_name[ours], size), *(by_name[name] for name in others)]
+        lines = [f"| problem | {ours}, {size:g} a | " + " | ".join(others) + " |", "|---|" + "---|" * len(codes)]
+        smaller = dict.fromkeys(others, "")
+        for number, problem in problems.items():
+            marks = [_mark(each, problem, number) for each in codes]
+            told = [_error(each, mark, number) for each, mark in zip(codes, marks, strict=True)]
+            if any(cell != "–" for cell in told[1:]):
+                lines.append(f"| {number} {NAMES[number]} | " + " | ".join(told) + " |")
+            for name, mark in zip(others, marks[1:], strict=True):
+                if mark and marks[0]:
+                    smaller[name] += "+" if marks[0].error < mark.error else "-"
+        counts = (f"{each.count('+')} of {len(each)} problems ({name})" for name, each in smaller.items())
+        parts.append("\n".join([*lines, "", fill(f"partialslip has the smaller error in {', '.join(counts)}.", 120)]))
+    return _EQUAL.format(tables="\n\n".join(parts))
+
+
+def _rung(submission: Submission, size: float) -> Submission:
+    """Answers of the ``submission`` with elements of one ``size``, in a, of its ladder."""
+    answers = {
+        number: Answer(rung.values, rung.cpu_s, rung.unknowns)
+        for number, answer in submission.answers.items()
+        for rung in answer.ladder
+        if rung.h == size
+    }
+    return Submission(submission.meta, answers)
+
+
+def _mark(submission: Submission, problem: Problem, number: str) -> Mark | None:
+    """What decides the grade of an answer; None without one that counts."""
+    answer = submission.answers.get(number)
+    found = graded(problem, answer) if answer else None
+    return found.overall if found and found.counts else None
+
+
+def _error(submission: Submission, mark: Mark | None, number: str) -> str:
+    """Error that the ``mark`` of an answer is of, and seconds of a whole process."""
+    answer = submission.answers.get(number)
+    if answer and not answer.values:
+        return "*none*"
+    if mark is None:
+        return "–"
+    code = CODES.get(submission.meta.code.removeprefix("partialslip "))
+    start = _start()["start"][code.method] if isinstance(code, Own) else 0.0
+    return f"{mark.error:.1e} ({mark.worst}; {float(f'{answer.cpu_s + start:.2g}'):g} s)"
 
 
 def _standings(found: Sequence[Submission]) -> str:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from partialslip.errors import InputError
+from partialslip.friction.coupled import SlidesError
 from partialslip.result import Clock
 from partialslip_fem import solving
 from partialslip_fem.bodies import Grading, Kept
@@ -15,13 +16,15 @@ _POINTS = 16  # cost: points of that element size, evenly spaced along the conta
 _WIDER = 8.0  # cost: largest first contact line over the usual one: elements of more than it are wider than the contact
 # limit: smallest half-width of a block, in the largest |x| in contact: less than the smallest `fem.width`
 _BEYOND = 3.9
+_FINEST = 8  # limit: first meshes are as many times finer where a displacement makes the bodies slide on coarser ones
 _FILLS = 0.95  # limit: largest contact line, in the width of a finite block: it keeps off the block's corners
 
 
 def solve_on_first_mesh(
     problem: Problem, width: float, clock: Clock, keep: Kept | None = None, alone: bool = False
 ) -> tuple[MeshSolution, int, int]:
-    """Double the contact line until it encloses the contact.
+    """Double the contact line until it encloses the contact. Coarse meshes are stiff: a displacement that makes the
+    bodies slide on them is tried on finer ones.
 
     Parameters
     ----------
@@ -39,7 +42,8 @@ def solve_on_first_mesh(
     Raises
     ------
     InputError
-        If the contact does not fit on a finite body, or a moment moves it by many times its width.
+        If the contact does not fit on a finite body, a moment moves it by many times its width, or a displacement makes
+        the bodies slide.
     """
     reach, limit, meshes, factored = 1.5 + max(map(abs, problem.kinks), default=0.0), contact_line_limit(problem), 0, 0
     check = problem.meshed  # on meshes from files this solution is also the last
@@ -57,11 +61,18 @@ def solve_on_first_mesh(
         raise too_narrow(problem)
     while reach <= farthest:  # no pressure within the contact line has this moment
         reach *= 2
+    finer = 1
     while True:
         reach = min(reach, limit)
-        sizes = dict.fromkeys(np.linspace(-reach, reach, _POINTS).tolist(), 2 * FIRST_SIZE * reach)
-        grading = Grading((-reach, reach), sizes, _GROWTH)
-        solution = solving.mesh_and_solve(problem, width * reach, grading, clock, keep, check, alone=alone)
+        sizes = dict.fromkeys(np.linspace(-reach, reach, _POINTS).tolist(), 2 * FIRST_SIZE * reach / finer)
+        grading = Grading((-reach, reach), sizes, _GROWTH / finer)
+        try:
+            solution = solving.mesh_and_solve(problem, width * reach, grading, clock, keep, check, alone=alone)
+        except SlidesError:
+            if finer >= _FINEST or problem.meshed:
+                raise
+            meshes, factored, finer = meshes + 1, factored + len(problem.parts), 2 * finer
+            continue
         meshes, factored = meshes + 1, factored + solution.factored
         if solution.enclosed:
             return solution, meshes, factored

@@ -94,7 +94,7 @@ def test_a_ladder_that_is_none_is_said_to_be(change, said, tmp_path):
 def test_linear_elements_answer_on_a_ladder(tmp_path):
     found = code_answers("fem-P1", {"PS-02": PROBLEM})
     answer = found.answers["PS-02"]
-    assert [rung.h for rung in answer.ladder] == [0.04, 0.02, 0.01]
+    assert [rung.h for rung in answer.ladder] == [0.1, 0.05, 0.025, 0.0125]
     assert [rung.unknowns for rung in answer.ladder] == sorted(rung.unknowns for rung in answer.ladder)
     write_submission(found, tmp_path)
     assert read_submission(tmp_path, read_problems()) == found

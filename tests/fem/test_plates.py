@@ -19,6 +19,8 @@ from partialslip.export.model import outlined
 from partialslip.friction import coupled
 from partialslip.result.record import PlatesRecord
 from partialslip.scene.writing import scene_toml
+from partialslip.verify.hard_cases.scenes import hard_scene
+from partialslip_fem import first_mesh
 from partialslip_fem.problem import Part
 
 E, NU = 72.1e9, 0.33
@@ -190,6 +192,28 @@ def test_a_soft_actuator_is_certified():
     found = solved({"load.Q": [0.0, 0.0], "load.displacement": [-1e-6, 1e-6], "load.spring": 1e-3})
     assert np.abs(found.plates.at_points).max() < 2e-9
     assert found.certificate["equilibrium"] < 1e-12
+
+
+@pytest.mark.slow
+@pytest.mark.fault
+def test_a_displacement_that_makes_coarse_meshes_slide_alone(monkeypatch):
+    """The first mesh of large blocks is 1.2 % too stiff: on it they slide under 0.997 f P. Force control gives the same
+    displacement and stick zone. Deliberate fault: no finer first mesh is tried."""
+    block = {"width": 4.0, "height": 2.0}
+    rig = partial(hard_scene, "large", bodies={"upper": block, "lower": block}, fem={"accuracy": 1e-3})
+    moved = 5.27e-5
+    under = rig(load={"displacement": [-moved, moved]})
+    fem = run(under, "fem")["fem"]
+    share = fem.plates.at_points[1] / (under.friction.f * under.P)
+    assert 0.99 < share < 1
+    forced = run(rig(share), "fem")["fem"]
+    assert forced.plates.displacement[1] == pytest.approx(moved, rel=1e-4)
+    assert (fem.m, fem.n) == pytest.approx((forced.m, forced.n), abs=1e-3 * fem.a)
+    with pytest.raises(InputError, match="slides on the way"):
+        run(rig(load={"displacement": [-1.01 * moved, 1.01 * moved]}), "fem")
+    monkeypatch.setattr(first_mesh, "_FINEST", 1)
+    with pytest.raises(InputError, match="slides on the way"):
+        run(under, "fem")
 
 
 @pytest.mark.slow

@@ -36,6 +36,10 @@ _Press = Callable[..., Pair]  # one step: force, gap, kept, where to begin, and 
 _Off = Callable[[Array, Array], float]  # relative L2 difference of forces
 
 
+class SlidesError(InputError):
+    """Bodies that a displacement moves slide, on this mesh: a finer one is less stiff, and bears less Q."""
+
+
 @dataclass(frozen=True)
 class Nodes:
     """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and ``ends(p, q,
@@ -312,6 +316,11 @@ def march(
         Tolerance of q for the steps of pressing, relative L2.
     pivot : Pivot, optional
         Pin on which a body turns; its moment is that of the path.
+
+    Raises
+    ------
+    SlidesError
+        If a displacement moves the bodies so far that they slide.
     """
     assert C.xx is not None
     xx, xy = C.xx, C.xy if C.xy is not None else 0 * C.xx
@@ -348,7 +357,7 @@ def march(
         this = LoadStep(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.factors, path.actuator, turning(load))
         normal, sheared = solve_near(this, starts, line.trail if line is not None else None, ("path", len(done)))
         if path.actuator is not None and not ((normal.x > 0) & (sheared.sides == 0)).any():
-            raise InputError("load.displacement: must keep |Q| below f P; the contact slides on the way")
+            raise SlidesError("load.displacement: must keep |Q| below f P; the contact slides on the way")
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, normal.x
 

@@ -65,10 +65,12 @@ def hard_scene(
     flat: float = 0.0,
     load: Mapping[str, Any] | None = None,
     fem: Mapping[str, Any] | None = None,
+    bodies: Mapping[str, Any] | None = None,
 ) -> Scene:
     """Return a scene with a contact half-width of 1 mm.
 
-    dQ = ``Qf`` 2 f P, dsigma = ``sf`` f p0; the means are in f P and f p0. ``flat`` is b/a, 0 for Hertz.
+    dQ = ``Qf`` 2 f P, dsigma = ``sf`` f p0; the means are in f P and f p0. ``flat`` is b/a, 0 for Hertz. A displacement
+    in ``load`` takes the place of Q.
     """
     a, R = 1e-3, 0.05
     data: dict[str, Any] = {
@@ -90,4 +92,7 @@ def hard_scene(
         "sigma": f * pressed.p0 * (sigma_mean + sf / 2 * ways),
         **(load or {}),
     }
-    return parse_scene(data | ({"fem": dict(fem)} if fem else {}))
+    if "displacement" in data["load"]:
+        del data["load"]["Q"]
+    more = {key: dict(each) for key, each in (("fem", fem), ("bodies", bodies)) if each}
+    return parse_scene(data | more)
