@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 import partialslip
-from partialslip.friction.threads import one_thread
 from partialslip.judge import Comparison
 from partialslip.result import Clock, Result
+from partialslip.threads import one_thread
 from partialslip_fem.bodies import Grading
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.problem import scaled

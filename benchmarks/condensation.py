@@ -6,8 +6,8 @@ import time
 import numpy as np
 
 from partialslip import load_scene, plan
-from partialslip.friction.threads import one_thread
 from partialslip.result import Clock
+from partialslip.threads import one_thread
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import body

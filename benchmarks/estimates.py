@@ -30,7 +30,6 @@ import partialslip
 from partialslip import Result, Scene
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.friction.threads import one_thread
 from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path.half_cycle import steady
@@ -40,6 +39,7 @@ from partialslip.halfplane.steady import stick_zone, transition
 from partialslip.judge import compare
 from partialslip.judge.means import norm_errors
 from partialslip.scene.reading import parse_scene
+from partialslip.threads import one_thread
 
 KEYS = ("a", "left", "right", "m", "n", "p", "q", "q1", "q2")
 KINDS = (

@@ -12,7 +12,6 @@ from partialslip.arrays import Array
 from partialslip.friction.coulomb_constant_pressure import march
 from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
-from partialslip.friction.threads import one_thread
 from partialslip.friction.zone_ends import read_stick_zone as read_zone
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
@@ -22,6 +21,7 @@ from partialslip.halfplane.steady import stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.march.cells import compliance, forces, graded_cells
 from partialslip.result import StickZone
+from partialslip.threads import one_thread
 
 P0 = 2 / np.pi  # a = P = 1
 

@@ -9,11 +9,11 @@ from msgspec.structs import replace as replace_fields
 
 from partialslip.allowance import Allowance
 from partialslip.errors import InputError
-from partialslip.friction.threads import one_thread
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result
 from partialslip.result.state import State
 from partialslip.scene import WIDTHS, Scene
+from partialslip.threads import one_thread
 from partialslip_fem.adapt import adapt
 from partialslip_fem.bodies import Kept
 from partialslip_fem.mesh_solution import Adapted

@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from partialslip.errors import InputError, MissingLibraryError
 from partialslip_meshes.files import check_files, quiet
@@ -183,6 +181,9 @@ def _ccw(points: Array, corners: Indices, refuse: Refuse) -> Indices:
 
 def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
     """Edges that belong to one triangle only, with the body on their left, (b, 2)."""
+    from scipy.sparse import coo_array  # takes long to import
+    from scipy.sparse.csgraph import connected_components
+
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     there, back = edges @ [count, 1], edges @ [1, count]
     order = np.argsort(there)

@@ -9,8 +9,8 @@ import pytest
 import partialslip
 from partialslip import load_scene, plan
 from partialslip.cli import main
-from partialslip.friction.threads import one_thread
 from partialslip.result import Clock
+from partialslip.threads import one_thread
 from partialslip_fem import solve
 from partialslip_fem.problem import Part, scaled
 from partialslip_fem.solving import solve_on_meshes

@@ -62,6 +62,21 @@ def test_compliance_is_the_mean_of_the_logarithm():
             assert C[i, j] == pytest.approx(-(inner @ weights) / weights.sum() / np.pi, abs=2e-9)
 
 
+def test_compliance_of_far_cells_is_the_exact_mean():
+    """Against the closed form in more digits, which double precision would lose at a distance."""
+    vertices = graded_cells(POINTS / 2, 1e-3, 0.1)
+    v = vertices.astype(np.longdouble)
+    low, high = v[:-1], v[1:]
+
+    def primitive(z):
+        return z**2 / 2 * np.log(np.abs(z) + (z == 0)) - 3 * z**2 / 4
+
+    pairs = [(high, low, 1), (low, high, 1), (high, high, -1), (low, low, -1)]
+    total = sum(sign * primitive(x[:, None] - s) for x, s, sign in pairs)
+    exact = -total / (high - low)[:, None] / (high - low) / np.pi
+    assert np.abs(compliance(vertices) - exact).max() < 1e-11
+
+
 def test_compliance_is_positive_definite_on_strongly_graded_cells():
     C = compliance(graded_cells(POINTS / 2, 1e-6, 0.1))
     assert np.abs(C - C.T).max() == 0

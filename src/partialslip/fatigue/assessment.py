@@ -18,6 +18,7 @@ from partialslip.result import Result
 from partialslip.run import solved_with_stresses
 from partialslip.scene import Scene
 from partialslip.scene.reading import AnyScene, as_scene
+from partialslip.threads import one_thread
 
 BODIES = ("lower", "upper")
 
@@ -133,6 +134,7 @@ class Assessment:
         return self.ratings[name].criterion.at(self.stress(x, depth))
 
 
+@one_thread
 def assess(
     scene: AnyScene, result: Result | None = None, criteria: Iterable[str] | None = None, *, body: str = "lower"
 ) -> Assessment:

@@ -36,6 +36,9 @@ def stress_svg(found: Assessment) -> str:
     exponent, unit = scale(largest, "Pa", found.scene.units)
 
     def draw(figure: "Figure") -> None:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+        FigureCanvasAgg(figure)  # has a renderer, of which each label of a contour otherwise makes its own
         grid = figure.subplots(3, 2, sharex=True, sharey=True)
         for component, row in enumerate(grid):
             low, high = (

@@ -29,11 +29,13 @@ from partialslip.result import Clock, Regime, Result, Slip, SteadyState, StressA
 from partialslip.result.state import State
 from partialslip.scene import Scene, Tabulated
 from partialslip.scene.model import require_carried
+from partialslip.threads import one_thread
 
 _SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
 _RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
 
 
+@one_thread
 def solve(
     scene: Scene, plan: Plan, progress: Callable[[str], None] = lambda _: None, start: State | None = None
 ) -> Result:

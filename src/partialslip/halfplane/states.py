@@ -1,6 +1,6 @@
 """States of a steady cycle by phase, from which stresses follow: contacts and shear tractions, known exactly."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -46,6 +46,7 @@ class Around:
     fields: Fields
     way: _Way
     unknown: str = ""
+    _known: dict[float, StressState] = field(default_factory=dict, repr=False, compare=False)
 
     def inside(self, x: Array, y: Array, phases: Array) -> Array:
         """Stresses (s, 3, k), Pa, at points (``x``, ``y``), m, (k,) each, and ``phases`` (s,) from 0 to 1.
@@ -55,11 +56,17 @@ class Around:
         InputError
             If the state at a phase has no closed form.
         """
-        return self.fields.at(Points.of(x, y), [self._state(phase) for phase in phases.tolist()])
+        return self.fields.at(Points.of(x, y), [self._at(phase) for phase in phases.tolist()])
 
     def surface(self, x: Array) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
         return self.fields.surface(x)
+
+    def _at(self, phase: float) -> StressState:
+        """State at a phase: criteria ask for the stresses of the same phases at one group of points after another."""
+        if phase not in self._known:
+            self._known[phase] = self._state(phase)
+        return self._known[phase]
 
     def _state(self, phase: float) -> StressState:
         first, second = self.fields.ends

@@ -159,10 +159,11 @@ def _mapped(shape: Shape, top: float, progress: Callable[[str], None]) -> StickM
     turns = transition(_CONSTANT, shape)
     ratios = np.broadcast_to(_RATIOS, (len(_CONSTANT), len(_RATIOS)))
     tensions = np.sort(np.concatenate([np.pi * _CONSTANT[:, None] * ratios, turns[:, None]], axis=1), axis=1)
+    fine = _fine_zones() if isinstance(shape, HertzShape) else None
     return StickMap(
         grid=_zones(grid[0], grid[1], shape, lambda share: progress(f"map {share:.0%}")),
-        m_lines=_lines([line for m in M_LEVELS for line in _m_lines(m, shape)], "m", shape),
-        n_lines=_lines([_n_line(n, shape) for n in N_LEVELS], "n", shape),
+        m_lines=_lines([line for m in M_LEVELS for line in _m_lines(m, shape)], "m", shape, fine),
+        n_lines=_lines([_n_line(n, shape) for n in N_LEVELS], "n", shape, fine),
         border=_m_lines(1.0, shape)[0],
         curves=_zones(_CONSTANT[:, None] + 0 * tensions, tensions, shape, lambda share: progress(f"ends {share:.0%}")),
         turns=_zones(_CONSTANT, turns, shape),
@@ -188,16 +189,20 @@ def _n_line(n: float, shape: Shape) -> MapLine:
     return MapLine(n, loads.Qf, loads.sf)
 
 
-def _lines(once: list[MapLine], of: str, shape: Shape) -> list[MapLine]:
+def _fine_zones() -> LoadedZones:
+    """Return gradual zones of Hertz contacts on a fine grid of loads."""
+    Qf, sf = np.meshgrid(np.linspace(0, 1, _FINE, endpoint=False), np.linspace(0, _TOP, _FINE))
+    return _zones(Qf, sf, HertzShape())
+
+
+def _lines(once: list[MapLine], of: str, shape: Shape, fine: LoadedZones | None) -> list[MapLine]:
     """Return lines of equal m or n under gradual loads: the lines of a single step, ``once``, and in place of their
-    parts where the table of gradual zones has others, lines through a fine grid of gradual zones."""
-    if not isinstance(shape, HertzShape):
+    parts where the table of gradual zones has others, lines through the ``fine`` grid of gradual zones, if any."""
+    if fine is None:
         return once
     from contourpy import contour_generator  # takes long to import
 
-    Qf, sf = np.meshgrid(np.linspace(0, 1, _FINE, endpoint=False), np.linspace(0, _TOP, _FINE))
-    fine = _zones(Qf, sf, shape)
-    contours = contour_generator(Qf, sf, np.where(fine.turned, np.nan, getattr(fine.zone, of)))
+    contours = contour_generator(fine.Qf, fine.sf, np.where(fine.turned, np.nan, getattr(fine.zone, of)))
     levels = sorted({line.at for line in once})
     there = [MapLine(at, *np.asarray(line, float).T) for at in levels for line in contours.lines(at)]
     parts = [part for line in once for part in _parts(line, ~_tabled(line, shape))]

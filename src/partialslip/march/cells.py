@@ -11,6 +11,7 @@ from partialslip.halfplane.shape import Shape
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 # accuracy: distance, in widths of the wider cell, within which pairs of cells are integrated in closed form
 _NEAR = 4.0
+_ROWS = 64  # cost: rows of the compliance at once, whose parts fit into the memory of the processor
 
 
 def graded_cells(points: Array, size: float | Array, growth: float) -> Array:
@@ -88,17 +89,15 @@ def compliance(vertices: Array) -> Array:
     narrower than 2. Scaling the ``vertices`` (c + 1,) to such a width adds a rigid shift only.
     """
     middle, width = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices)
-    # far pairs: a product of Gauss rules, without cancellation
-    points = (middle[:, None] + width[:, None] / 2 * _NODES).ravel()
-    weights = _WEIGHTS / 2
     count = len(middle)
     distance = np.abs(middle[:, None] - middle)
     near = distance < _NEAR * np.maximum(width[:, None], width)
     result = np.empty((count, count))
-    for rows in np.array_split(np.arange(count), max(count // 64, 1)):
-        x = points.reshape(count, -1)[rows].ravel()
-        logs = np.log(np.abs(x[:, None] - points) + 1e-300).reshape(len(rows), len(_NODES), count, len(_NODES))
-        result[rows] = np.einsum("iajb,a,b->ij", logs, weights, weights, optimize=True)
+    for rows in np.array_split(np.arange(count), max(count // _ROWS, 1)):
+        others = slice(rows[0], None)  # pairs with earlier cells are known by symmetry
+        apart = np.where(near[rows, others], np.inf, distance[rows, others])
+        result[rows, others] = _mean_log(apart, width[rows, None] / 2, width[others] / 2)
+        result[others, rows] = result[rows, others].T
     i, j = np.nonzero(near)
     offset = middle[i] - middle[j]
     total, apart = (width[i] + width[j]) / 2, (width[i] - width[j]) / 2
@@ -106,6 +105,26 @@ def compliance(vertices: Array) -> Array:
     closed = outer - _primitive(offset - apart) - _primitive(offset + apart)
     result[i, j] = closed / (width[i] * width[j])
     return -(result + result.T) / (2 * np.pi)
+
+
+def _mean_log(distance: Array, half: Array, others: Array) -> Array:
+    """Mean of log|x - s| over far cells at a ``distance`` of their middles, of half-widths ``half`` and ``others``.
+
+    A product of Gauss rules, without cancellation. As logarithms cost most, there is one for all pairs of nodes of the
+    same weight: of the product of their distances.
+    """
+    square = distance**2
+
+    def four(node: float, other: float) -> Array:
+        """Product of the distances of the nodes at +-``node`` and +-``other``."""
+        return (square - (half * node + others * other) ** 2) * (square - (half * node - others * other) ** 2)
+
+    mean: Array = np.zeros_like(square)
+    right = list(zip(_NODES[_NODES > 0].tolist(), _WEIGHTS[_NODES > 0].tolist(), strict=True))
+    for (node, weight), (other, its) in itertools.combinations_with_replacement(right, 2):
+        product = four(node, other) if node == other else four(node, other) * four(other, node)
+        mean += weight * its / 4 * np.log(product)
+    return mean
 
 
 def _primitive(z: Array) -> Array:

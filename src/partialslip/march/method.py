@@ -7,13 +7,13 @@ a convex problem with a certificate.
 from collections.abc import Callable
 
 from partialslip.allowance import Allowance
-from partialslip.friction.threads import one_thread
 from partialslip.march import similar, unlike
 from partialslip.march.driver import march
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result
 from partialslip.result.state import State
 from partialslip.scene import Scene
+from partialslip.threads import one_thread
 
 
 @one_thread

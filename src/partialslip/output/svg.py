@@ -24,11 +24,19 @@ _SHADE = re.compile(r"#([0-9a-f]{2})\1\1\b")
 def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)) -> str:
     """Return a figure as SVG text, drawn by ``draw(figure)``, of ``size`` (width, height) in inches."""
     from matplotlib import rc_context
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     with rc_context(_STYLE):
-        figure = Figure(figsize=size, layout="constrained")
+        layout = ConstrainedLayoutEngine()
+        figure = Figure(figsize=size, layout=layout)
         draw(figure)
+        # laid out here, as savefig would draw everything once more to do so, at the 72 dots per inch of SVG
+        FigureCanvasSVG(figure)
+        figure.dpi = 72
+        layout.execute(figure)
+        figure.set_layout_engine("none")
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata=dict.fromkeys(("Date", "Creator", "Format", "Type")))
     return with_dark_mode(text.getvalue())

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from partialslip.arrays import Array, Indices, Mask
 from partialslip.errors import InputError
 from partialslip.shown import Short
+from partialslip.threads import one_thread
 
 _LOAD_POINTS = (0.0, 0.5)  # fixed: phases of load points 1 and 2
 
@@ -146,6 +147,7 @@ class StressAt:
 
     function: Callable[[Array, Array, Array], Array]
 
+    @one_thread
     def __call__(self, x: npt.ArrayLike, y: npt.ArrayLike, phases: npt.ArrayLike | None = None) -> Array:
         """Return the stresses (2, 3, ...), Pa, by load point, component xx, yy, xy, and the common shape of ``x`` and
         ``y``; with ``phases`` (s,) the first axis is that of the phases. Points outside the bodies are NaN.

@@ -7,10 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, ParamSpec, TypeVar
 
-import scipy.linalg  # noqa: F401 - the controller sees the libraries that are loaded by now
 from threadpoolctl import OpenBLASController, ThreadpoolController
 
-_CONTROLLER = ThreadpoolController()
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
@@ -30,7 +28,8 @@ class _Limit:
         with self._lock:
             if not self._running:
                 _take_over()
-                self._limited = _CONTROLLER.limit(limits=1, user_api="blas")
+                # SciPy brings a library of its own: a new controller sees the libraries that are loaded by now
+                self._limited = ThreadpoolController().limit(limits=1, user_api="blas")
             self._running += 1
         try:
             yield
