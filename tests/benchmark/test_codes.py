@@ -182,7 +182,8 @@ def test_a_scene_that_cannot_be_exported_is_not_offered():
 @pytest.mark.parametrize(
     ("name", "code", "most"),
     [("getfem", GetFEM(0.1), 0.06), ("getfem-graded", GetFEM(0.1, 0.01), 0.02),
-     ("kratos", Kratos(0.1, 8), 0.3), ("calculix-penalty", Calculix(0.1, True), 0.1)],
+     ("kratos", Kratos(0.1, 8), 0.3), ("opensees", OpenSees(0.1, 8), 0.06),
+     ("calculix-penalty", Calculix(0.1, True), 0.1)],
 )  # fmt: skip
 def test_codes_that_are_installed_come_near(name, code, most, monkeypatch):
     """Elements of a tenth of the contact: tractions and ends are off by some of them at most."""

@@ -2,8 +2,8 @@
 
 Plane quadrilaterals of small strain. Each node of the upper contact line faces a node of the lower one. The pair has an
 element SimpleContact2D, which closes the gap with a Lagrange multiplier, and whose ContactMaterial2D has Coulomb
-friction with a stiffness of sticking. The element is made for a node on a segment: here the segment has two nodes of its
-own, which are tied to the lower node. The element finds out only at the end of an increment whether points touch.
+friction with a stiffness of sticking. The element is made for a node on a segment. Here the segment has two nodes of
+its own, which are tied to the lower node. The element finds out only at the end of an increment whether points touch.
 Therefore each increment is repeated under the same loads until the multipliers rest. Friction acts when the upper body
 is no longer guided. Lengths are in a, and stresses in E of the lower body.
 
