@@ -119,12 +119,14 @@ in these versions with these settings and meshes.
   0.4999 (PS-14) Newton's method does not converge. The adapter does not turn bodies (PS-21).
 - **OpenSees 3.7.1** (OpenSeesPy 3.7.1.2; linear quadrilaterals, SimpleContact2D with multipliers, ContactMaterial2D
   with 1000 E/a on stick, 8 increments). Where it converges, it is as right as CalculiX's mortar contact on the same
-  mesh: p_max to 5e-3 in PS-01 and PS-05, n to 1.5e-2 a in PS-05, p_max to 2e-2 in PS-23; with tension, too (PS-03,
-  PS-05). When the load has turned round, it does not converge in PS-07, nor in the third cycle of PS-15. The element
-  finds contact one increment late; the adapter therefore repeats an increment under the same loads until the
-  multipliers rest. The handler "Transformation" keeps one tie of a node without a message: a body whose nodes were tied
-  along x and y by two commands tilted. The adapter does not turn bodies (PS-21) and needs meshes that match (PS-26).
-  Most other problems were not tried yet.
+  mesh: p_max to 5e-3 in PS-01 and PS-05, n to 1.5e-2 a in PS-05, p_max to 2e-2 in PS-23; with tension (PS-03, PS-05),
+  near sliding (PS-08) and under varying P (PS-19), too. It does not converge in PS-07 and in the third cycle of PS-15,
+  after the load has turned round, nor while unlike bodies are pressed (PS-25). At nu = 0.4999 (PS-14) the linear
+  quadrilaterals lock: pressure stands on single nodes, 4.6 p0 too high, without a message. The element finds contact
+  one increment late; the adapter therefore repeats an increment under the same loads until the multipliers rest. The
+  handler "Transformation" keeps one tie of a node without a message: a body whose nodes were tied along x and y by two
+  commands tilted. The adapter does not turn bodies (PS-21) and needs meshes that match (PS-26). The other problems were
+  not tried.
 - **partialslip.** Linear and quadratic elements of one size (P1, P2) lose a grade or two where the contact has corners
   (PS-10, PS-11) and where nu = 0.4999 (PS-14). The marching method has the exact pressure, so its errors are those of q
   alone.
