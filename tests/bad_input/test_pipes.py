@@ -151,7 +151,7 @@ OPENERS = {
     "origin", "memory",  # of the packages and of the operating system
     "reading", "book", "problem", "prices", "gradual_table",  # data of the package
     "ending",  # the null device
-    "process", "calculix", "neutral", "moose", "run_getfem", "run_kratos",  # in temporary folders of the package
+    "process", "calculix", "neutral", "moose", "run_getfem", "run_kratos", "run_opensees",  # in folders made here
 }  # fmt: skip
 
 

@@ -13,6 +13,8 @@ from partialslip.benchmark.codes.getfem import HOST as GETFEM
 from partialslip.benchmark.codes.getfem import GetFEM
 from partialslip.benchmark.codes.kratos import HOST as KRATOS
 from partialslip.benchmark.codes.kratos import Kratos
+from partialslip.benchmark.codes.opensees import HOST as OPENSEES
+from partialslip.benchmark.codes.opensees import OpenSees
 from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.codes.process import python_with
 from partialslip.benchmark.submission import read_submission
@@ -21,8 +23,8 @@ from partialslip.errors import InputError, PartialslipError
 from partialslip.run import run
 
 PROBLEMS = read_problems()
-COARSE = {"getfem": GetFEM(0.3), "kratos": Kratos(0.3, 1)}
-VARIABLES = {"getfem": GETFEM.variable, "kratos": KRATOS.variable}
+COARSE = {"getfem": GetFEM(0.3), "kratos": Kratos(0.3, 1), "opensees": OpenSees(0.3, 1)}
+VARIABLES = {"getfem": GETFEM.variable, "kratos": KRATOS.variable, "opensees": OPENSEES.variable}
 
 
 @pytest.fixture(autouse=True)
@@ -44,7 +46,7 @@ def stand_in(folder, monkeypatch, name, does):
     monkeypatch.setitem(CODES, name, COARSE[name])
 
 
-@pytest.mark.parametrize("name", ["getfem", "kratos"])
+@pytest.mark.parametrize("name", COARSE)
 def test_a_python_without_the_code_is_not_taken(name, tmp_path, monkeypatch):
     for named in (str(tmp_path / "nowhere"), sys.executable):  # this one has neither
         monkeypatch.setenv(VARIABLES[name], named)
@@ -74,7 +76,7 @@ def test_the_path_is_searched_for_a_python(tmp_path, monkeypatch):
         ),
     ],
 )
-@pytest.mark.parametrize("name", ["getfem", "kratos"])
+@pytest.mark.parametrize("name", COARSE)
 def test_a_code_that_fails_answers_with_a_note(name, does, said, tmp_path, monkeypatch):
     stand_in(tmp_path, monkeypatch, name, does)
     found = code_answers(name, {"PS-02": PROBLEMS["PS-02"]})
@@ -88,7 +90,7 @@ def test_a_code_that_fails_answers_with_a_note(name, does, said, tmp_path, monke
     assert read_submission(tmp_path / "kept", PROBLEMS) == found
 
 
-@pytest.mark.parametrize("name", ["getfem", "kratos"])
+@pytest.mark.parametrize("name", COARSE)
 def test_tractions_that_a_code_writes_become_its_answer(name, tmp_path, monkeypatch):
     """Exact tractions give the targets, as far as the reader finds the ends between points."""
     problem = PROBLEMS["PS-02"]
@@ -106,13 +108,14 @@ def test_tractions_that_a_code_writes_become_its_answer(name, tmp_path, monkeypa
     assert {"stick", "tractions", "levels"} & found.groups.keys()
 
 
-@pytest.mark.parametrize("name", ["getfem", "kratos"])
+@pytest.mark.parametrize("name", COARSE)
 def test_scripts_are_told_the_problem(name, tmp_path, monkeypatch):
     """P, Q and sigma of the last cycle, friction, supports and materials, for the pad on the pulled specimen."""
     keep = f"open({str(tmp_path / 'told.json')!r}, 'w').write(json.dumps(told)); sys.exit('enough')"
     stand_in(tmp_path, monkeypatch, name, keep)
     scene = PROBLEMS["PS-24"].scene
-    monkeypatch.setitem(CODES, name, GetFEM(0.2) if name == "getfem" else Kratos(0.2, 1))
+    finer = {"getfem": GetFEM(0.2), "kratos": Kratos(0.2, 1), "opensees": OpenSees(0.2, 1)}
+    monkeypatch.setitem(CODES, name, finer[name])
     code_answers(name, {"PS-24": PROBLEMS["PS-24"]})
     told = json.loads((tmp_path / "told.json").read_text("utf-8"))
     steps = [told["steps"][number] for number in told["points"]]
@@ -127,9 +130,10 @@ def test_scripts_are_told_the_problem(name, tmp_path, monkeypatch):
         assert sum(told["pull"]) == pytest.approx(scene.bodies.lower.height)
 
 
-def test_kratos_does_not_offer_bodies_that_turn(tmp_path, monkeypatch):
-    stand_in(tmp_path, monkeypatch, "kratos", "sys.exit('must not be run')")
-    assert code_answers("kratos", {"PS-21": PROBLEMS["PS-21"]}).answers == {}
+@pytest.mark.parametrize(("name", "number"), [("kratos", "PS-21"), ("opensees", "PS-21"), ("opensees", "PS-26")])
+def test_bodies_that_turn_and_meshes_that_do_not_match_are_not_offered(name, number, tmp_path, monkeypatch):
+    stand_in(tmp_path, monkeypatch, name, "sys.exit('must not be run')")
+    assert code_answers(name, {number: PROBLEMS[number]}).answers == {}
 
 
 @pytest.mark.parametrize(
@@ -170,7 +174,7 @@ def test_a_mesh_that_cannot_be_made_stops_no_other_problem(monkeypatch):
 
 def test_a_scene_that_cannot_be_exported_is_not_offered():
     scene = PROBLEMS["PS-02"].scene.replace(load={"sigma_slope": (0.0, 1e9)})
-    for code in (Calculix(0.3, True), GetFEM(0.3), Kratos(0.3, 1)):
+    for code in (Calculix(0.3, True), GetFEM(0.3), Kratos(0.3, 1), OpenSees(0.3, 1)):
         assert code.solve(scene) is None
 
 
@@ -178,7 +182,8 @@ def test_a_scene_that_cannot_be_exported_is_not_offered():
 @pytest.mark.parametrize(
     ("name", "code", "most"),
     [("getfem", GetFEM(0.1), 0.06), ("getfem-graded", GetFEM(0.1, 0.01), 0.02),
-     ("kratos", Kratos(0.1, 8), 0.3), ("calculix-penalty", Calculix(0.1, True), 0.1)],
+     ("kratos", Kratos(0.1, 8), 0.3), ("opensees", OpenSees(0.1, 8), 0.06),
+     ("calculix-penalty", Calculix(0.1, True), 0.1)],
 )  # fmt: skip
 def test_codes_that_are_installed_come_near(name, code, most, monkeypatch):
     """Elements of a tenth of the contact: tractions and ends are off by some of them at most."""

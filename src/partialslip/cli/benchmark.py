@@ -53,8 +53,8 @@ def add(commands: Commands) -> None:
                             examples=["partialslip benchmark run --code exact",
                                       "partialslip benchmark run --code fem-1e-4 --problems PS-0*"])  # fmt: skip
     runs.add_argument("--code", required=True, metavar="CODE", help="exact, march, fem-1e-3, fem-1e-4, fem-1e-5, "
-                      "fem-P1, fem-P2, equivalent, calculix-mortar, calculix-penalty, getfem, getfem-graded or "
-                      "kratos")  # fmt: skip
+                      "fem-P1, fem-P2, equivalent, calculix-mortar, calculix-penalty, getfem, getfem-graded, "
+                      "kratos or opensees")  # fmt: skip
     runs.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
     add_out(runs, "results/benchmark-CODE[-HASH]")
     runs.set_defaults(command=_run, overrides=[])

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
 from partialslip.benchmark.codes.kratos import Kratos
+from partialslip.benchmark.codes.opensees import OpenSees
 from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.codes.process import CodeOutcome
 from partialslip.benchmark.measured import answer_of
@@ -46,6 +47,7 @@ CODES: dict[str, Code] = {
     "calculix-mortar": Calculix(0.05, False),
     "calculix-penalty": Calculix(0.05, True),
     "kratos": Kratos(0.1, 8),
+    "opensees": OpenSees(0.05, 8),
     "getfem": GetFEM(0.05),
     "getfem-graded": GetFEM(0.05, 0.003),
 }

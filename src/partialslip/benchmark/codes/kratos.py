@@ -3,14 +3,13 @@
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from partialslip.benchmark.codes.process import CodeOutcome
-from partialslip.benchmark.codes.scripted import Host, of_scene, solved
+from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, solved
 from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
-from partialslip.export.model import Model, modelled
+from partialslip.export.model import modelled
 from partialslip.scene import Scene
 
 HOST = Host(
@@ -55,24 +54,4 @@ class Kratos:
         counts = (max(each.increments, self.increments if each.name == "press" else least) for each in made.steps)
         steps = [step._replace(increments=count) for step, count in zip(made.steps, counts, strict=True)]
         with tempfile.TemporaryDirectory() as folder:
-            return solved(HOST, scene, of_scene(scene, steps) | _told(made), Path(folder))
-
-
-def _told(made: Model) -> dict[str, Any]:
-    lower = made.parts[0]
-    return {
-        "a": made.a,
-        "bodies": {
-            part.name: {
-                "points": part.mesh.points.tolist(),
-                "quads": part.mesh.quads.tolist(),
-                "contact": part.mesh.lines["contact"].tolist(),
-                "E": part.E,
-                "nu": part.nu,
-            }
-            for part in made.parts
-        },
-        "held": {part.name: [nodes.tolist() for nodes in part.held_nodes] for part in made.parts},
-        "pull": lower.pull.tolist(),
-        "strained": lower.strained.tolist(),
-    }
+            return solved(HOST, scene, of_scene(scene, steps) | of_model(made), Path(folder))

@@ -12,6 +12,7 @@ import msgspec
 from partialslip.benchmark.codes.process import LONGEST, CodeOutcome, python_with, ran
 from partialslip.errors import InputError
 from partialslip.export.load_steps import Step
+from partialslip.export.model import Model
 from partialslip.scene import Scene
 from partialslip.score.method import scored
 from partialslip.score.read import read_tractions
@@ -50,6 +51,27 @@ def of_scene(scene: Scene, steps: Sequence[Step]) -> dict[str, Any]:
         "steps": [step._asdict() for step in steps],
         "points": [-1, -1] if scene.only_pressed else [first + end for end in scene.load.ends],
         "table": TABLE,
+    }
+
+
+def of_model(made: Model) -> dict[str, Any]:
+    """Parameters of scripts that build a meshed model: bodies, supports, and the bulk tension."""
+    lower = made.parts[0]
+    return {
+        "a": made.a,
+        "bodies": {
+            part.name: {
+                "points": part.mesh.points.tolist(),
+                "quads": part.mesh.quads.tolist(),
+                "contact": part.mesh.lines["contact"].tolist(),
+                "E": part.E,
+                "nu": part.nu,
+            }
+            for part in made.parts
+        },
+        "held": {part.name: [nodes.tolist() for nodes in part.held_nodes] for part in made.parts},
+        "pull": lower.pull.tolist(),
+        "strained": lower.strained.tolist(),
     }
 
 

@@ -1,0 +1,59 @@
+"""OpenSees: models by :mod:`partialslip.export`, run by a Python that has OpenSeesPy."""
+
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from partialslip.benchmark.codes.process import CodeOutcome
+from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, solved
+from partialslip.benchmark.increments import gradual
+from partialslip.benchmark.neutral import GROWTH
+from partialslip.errors import InputError
+from partialslip.export.model import modelled
+from partialslip.scene import Scene
+
+HOST = Host(
+    "PARTIALSLIP_OPENSEES_PYTHON",
+    "import openseespy.opensees; from importlib.metadata import version; print(version('openseespy'))",
+    "run_opensees.py",
+)
+_MATCH = 1e-6  # fixed: distance of nodes that face each other, in a, far below the size of an element
+
+
+@dataclass(frozen=True)
+class OpenSees:
+    """OpenSees with elements of ``size`` a, at least so many ``increments`` a step after pressing, and ``sticking``,
+    the stiffness of sticking, in E/a."""
+
+    size: float
+    increments: int
+    sticking: float = 1000.0
+
+    @property
+    def version(self) -> str | None:
+        """Version of OpenSeesPy; None if no Python has it."""
+        return HOST.told
+
+    @property
+    def settings(self) -> str:
+        """Settings in words."""
+        kind = f"linear quadrilaterals of {self.size:g} a along the contact, SimpleContact2D with multipliers"
+        return f"{kind}, {self.sticking:g} E/a on stick, at least {self.increments} increments a step"
+
+    def solve(self, scene: Scene) -> CodeOutcome | None:
+        """Solve ``scene``; None if there is no model, the upper body would have to turn, or the meshes do not match."""
+        scene = gradual(scene)
+        if any(M for _, M in scene.pressing):
+            return None
+        try:
+            made = modelled(scene, self.size, growth=GROWTH)
+        except InputError:
+            return None
+        lines = [sorted(part.mesh.points[part.contact, 0] / made.a) for part in made.parts]
+        if len(lines[0]) != len(lines[1]) or max(abs(x - y) for x, y in zip(*lines, strict=True)) > _MATCH:
+            return None
+        counts = (max(each.increments, self.increments) for each in made.steps)
+        steps = [step._replace(increments=count) for step, count in zip(made.steps, counts, strict=True)]
+        with tempfile.TemporaryDirectory() as folder:
+            told = of_scene(scene, steps) | of_model(made) | {"sticking": self.sticking}
+            return solved(HOST, scene, told, Path(folder))
