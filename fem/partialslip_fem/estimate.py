@@ -13,6 +13,7 @@ than the slip that the way has locked in (:mod:`partialslip_fem.locked`). An end
 room that q has left and from the loads at which the nodes beside it stuck again
 (:attr:`partialslip.friction.zone_ends.StickInterval.caught`): it is not known better than both readings agree. One that
 turned round and came back is not known better than the nodes beside it are apart, if these do not tell how far it came.
+Where it turned round q has a kink, which elements of both orders miss alike.
 
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
 the order: like those of q at kinks, they are a part of the change.
@@ -28,7 +29,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Mask
 from partialslip.bars import LEAST_SHEAR
 from partialslip.result import Clock
 from partialslip_fem.locked import locked_in
@@ -71,6 +72,9 @@ _SIDE = 0.5  # accuracy: largest error of an end due to the fit, in the element 
 # accuracy: error of an end that moves over nodes that slipped, in the element size: q is off its bound by little there
 _CAUGHT_UP = 0.05
 _KINK = 0.03  # accuracy: L2 error of q at a kink, in its strength times the element size
+# accuracy: the same where an end of the stick zone turned round, in the strength times the distance to the nearest
+# vertex (measured at 11 kinks: 0.006 to 0.1)
+_TURNED_KINK = 0.1
 _STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength times the shift
 # accuracy: of the change: least error where the gap's curvature jumps within elements (measured on tables)
@@ -168,15 +172,17 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
             fitted[2:4] += np.array(solution.stick.strips) / solution.half_width
         errors |= dict(zip("mn", fitted[2:4].tolist(), strict=True))
     if solution.history:
-        half, *both = _norms(solution)
+        half, *both = _norms(solution).tolist()
         a = solution.half_width
         if solution.stick and half > 0:  # where slip strips are narrow, q is steep beside them
             near = (sizes * np.minimum(sizes / gaps.min(axis=0), 1.0))[2:4]
             errors["q"] = math.hypot(errors["q"], *(_STEEP * _stick_end_strengths(solution) * near))
-        locked = np.hypot.reduce(_KINK * _kink_strengths(solution) * at_kinks * a, axis=1)
-        for key, norm, kinks in zip(("q1", "q2"), both, locked.tolist(), strict=True):
+        turned, *locked = _kink_errors(solution, at_kinks * a)
+        for key, norm, kinks in zip(("q1", "q2"), both, locked, strict=True):
             if norm > 0:
-                errors[key] = math.hypot(errors["q"] * half, kinks) / float(norm)
+                errors[key] = math.hypot(errors["q"] * half, kinks) / norm
+        if half > 0:
+            errors["q"] = math.hypot(errors["q"], turned / half)
     return errors
 
 
@@ -254,7 +260,9 @@ def kink_sizes(solution: MeshSolution, error: float) -> Array:
     if not solution.kinks or not solution.history:
         return np.empty(0)
     norms = np.maximum(_norms(solution)[1:], np.finfo(float).tiny)
-    relative = _KINK * _kink_strengths(solution) * solution.half_width * math.sqrt(len(solution.kinks)) / norms[:, None]
+    relative = (
+        _KINK * _kink_strengths(solution)[1:] * solution.half_width * math.sqrt(len(solution.kinks)) / norms[:, None]
+    )
     return error / np.maximum(relative.max(axis=0), np.finfo(float).tiny)
 
 
@@ -279,11 +287,44 @@ def _norm(traction: PPoly) -> float:
     return float(np.sqrt(np.sum(force**2 / np.diff(traction.x))))
 
 
+def _kink_errors(solution: MeshSolution, sizes: Array) -> list[float]:
+    """L2 errors of (q2 - q1)/2, q1 and q2 due to the elements of ``sizes`` (j,) at the kinks of ``solution``. Where an
+    end turned round, the kink is smoothed over as far as the nearest vertex."""
+    vertices, kinks = solution.lower.x[:: solution.lower.order], np.array(solution.kinks)
+    cells = np.clip(np.searchsorted(vertices, kinks), 1, len(vertices) - 1)
+    share = (kinks - vertices[cells - 1]) / (vertices[cells] - vertices[cells - 1])
+    parts = np.where(_turned(solution), _TURNED_KINK * np.minimum(share, 1 - share), _KINK)
+    errors: list[float] = np.hypot.reduce(parts * _kink_strengths(solution) * sizes, axis=1).tolist()
+    return errors
+
+
 def _kink_strengths(solution: MeshSolution) -> Array:
-    """Strengths of q1 and q2 at the kinks of ``solution``, (2, j)."""
-    history = solution.history
+    """Strengths of (q2 - q1)/2, q1 and q2 at the kinks of ``solution``, (3, j).
+
+    (q2 - q1)/2 has a kink only where an end of the stick zone turned round. That point is known to half the distance of
+    two nodes: the strength is the largest one there.
+    """
+    history, kinks, turned = solution.history, np.array(solution.kinks), _turned(solution)
     assert history
-    return _strengths(solution, [history.q1, history.q2], np.array(solution.kinks))
+    shears, half = [history.change / 2, history.q1, history.q2], _between_nodes(solution) / 2
+    found = _strengths(solution, shears, kinks)
+    beside = [_strengths(solution, shears, kinks + way * half) for way in (-1, 1)]
+    found = np.where(turned, np.maximum.reduce([found, *beside]), found)
+    found[0, ~turned] = 0.0
+    return found
+
+
+def _turned(solution: MeshSolution) -> Mask:
+    """Whether an end of the stick zone turned round at each of the kinks of ``solution``, (j,)."""
+    apart = np.abs(np.subtract.outer(np.array(solution.kinks), solution.turning))
+    return (apart <= _between_nodes(solution)[:, None]).any(axis=1)
+
+
+def _between_nodes(solution: MeshSolution) -> Array:
+    """Distances of the nodes between which the kinks of ``solution`` lie, (j,)."""
+    x = solution.lower.x[solution.nodes]
+    after = np.clip(np.searchsorted(x, solution.kinks), 1, len(x) - 1)
+    return x[after] - x[after - 1]
 
 
 def _strengths(solution: MeshSolution, shears: Sequence[Array], points: Array) -> Array:

@@ -115,6 +115,28 @@ def test_room_of_a_drifting_end_taken_for_gone():
     assert abs(zone.left - zone.caught[0]) > 0.5 * abs(zone.left - exact)
 
 
+@pytest.mark.fault
+def test_nodes_that_slip_up_to_the_load_point_have_no_room():
+    """Nodes beyond the left end, which drifts, come to load point 2 with q at its bound, but miss the bound by little
+    at load point 1: no further cycle would leave them that room. Deliberate fault: when nodes stuck again is not
+    known."""
+    exact = steady(Loads(7.0, np.pi * 0.55), HertzShape()).last.zone
+    vertices, *problem = cells(points=(-1, exact.left, exact.right, 1), size=1e-3, growth=0.07)
+    history, x = march(*problem, 1.0, loads(0.55, 7.0)), problem[1][0]
+    beyond = (x < exact.left) & (x > exact.left - 0.02)
+    q1 = history.q1 * np.where(beyond, 1 - 1e-7, 1.0)
+    points = [*history.points]
+    points[-2] = replace(points[-2], x=q1)
+    history = replace(history, q1=q1, points=points)
+
+    def left(history):
+        known = history.lasting, history.unsteady, history.stuck
+        return read_stick_zone(x, history.bound, history.change, vertices, lambda each: each, *known).left
+
+    assert left(history) == pytest.approx(exact.left, abs=2e-4)
+    assert abs(left(replace(history, stuck=None)) - exact.left) > 5e-3
+
+
 def test_half_a_cycle_where_slip_does_not_turn_round():
     """The first loading determines the cycle; where it does not, cycles follow until nothing changes."""
     _, *problem = cells()

@@ -140,6 +140,22 @@ def test_an_end_that_came_back_between_two_nodes_lies_between_them():
 
 
 @pytest.mark.fault
+def test_a_fit_does_not_reach_across_the_place_where_an_end_turned_round(monkeypatch):
+    """Five vertices beside the end are those of the strip over which nodes slipped before; q has a kink at the other
+    side of it. Deliberate fault: which nodes slipped is not looked at."""
+    true = 0.5237
+    some = room(-0.31, true)
+    some[VERTICES[1:] < 0.376] *= 0.8
+    at = np.sqrt(np.clip((true - VERTICES) * (VERTICES + 0.31), 0, None))
+    at[VERTICES < 0.374] *= 0.8
+    changed = np.where(true > VERTICES, np.where(VERTICES > 0.374, 0.5, np.nan), 0.99)
+    given = VERTICES, np.ones(len(VERTICES)), 2 - at, VERTICES, lambda _: some, changed
+    assert read_stick_zone(*given).right == pytest.approx(true, abs=0.025 / 50)
+    monkeypatch.setattr(zone_ends, "_slipped", lambda *_: 0)
+    assert abs(read_stick_zone(*given).right - true) > 0.025 / 10
+
+
+@pytest.mark.fault
 def test_an_end_beside_nodes_with_unsteady_room_has_moved_outwards(monkeypatch):
     """Under mean loads nodes beyond the end stick again, later than those within it, with room that is to vanish.
     Deliberate fault: the last node that stuck again counts as one that slips on."""

@@ -176,8 +176,12 @@ class History:
         single node may hardly move by chance, so that the one of its neighbours that moves most tells. Gone is also
         room of which the limit of the last three cycles, by Aitken's method, leaves less than half: of room that falls
         in geometric progression it leaves none, of room that falls with a power of the cycles a part.
+
+        At constant pressure half cycles of a steady state are mirror images of each other: nodes that slip as they come
+        to load point 2 slip as they come to load point 1, too. All of their room is gone, even if it does not fall
+        evenly.
         """
-        if self.changed is None:
+        if self.changed is None or self.lasting is None:
             return None
         cycle, (one, two) = len(self.path.cycle), self.path.ends
         last = len(self.points) - cycle
@@ -193,6 +197,9 @@ class History:
             falls, fell = before[0] - room, before[1] - before[0]
             more = np.divide(falls**2, fell - falls, out=np.zeros_like(room), where=(falls > 0) & (falls < fell))
             gone = np.where(2 * more > room, np.maximum(room, gone), gone)
+        if self.stuck is not None and not self.path.presses_anew:
+            slips = np.isfinite(self.lasting) & ~(self.stuck >= self.lasting)
+            gone = np.where(slips, np.maximum(room, gone), gone)
         return np.where(changed, gone, 0.0)
 
     def _moved_beside(self, ago: int) -> Array:

@@ -8,9 +8,9 @@ in the last elements.
 Where the stick zone moves over nodes that have slipped, they stick again, and 2 f p - |dq| falls towards the end like
 distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth.
 
-An end that came back into a narrow strip of such nodes lies between the last node that sticks and the first one that
-slips: a fit would reach across the kink of q at the other side of the strip. The strip may be narrower than the
-distance of two nodes: then no node lies in it, but the first one that slips had stuck again before.
+An end that came back into a strip of such nodes is fitted to this strip alone: at its other side q has a kink. Where
+the strip is narrow, the end lies between the last node that sticks and the first one that slips. The strip may be
+narrower than the distance of two nodes: then no node lies in it, but the first one that slips had stuck again before.
 """
 
 import itertools
@@ -95,11 +95,16 @@ def read_stick_zone(
         return StickInterval(point, point, signs)
     rooms = (cell_forces(2 * bound - sign * change) for sign in signs)
     powers = [_power(changed, still, sticks[:_RUN], first - 1), _power(changed, still, sticks[::-1][:_RUN], last)]
+    # at the other side of nodes that slipped before, q has a kink, which no fit may reach across
+    fitted = [
+        inside if power != _ROOT else inside[: _slipped(changed, inside) or len(inside)]
+        for inside, power in zip((sticks, sticks[::-1]), powers, strict=True)
+    ]
     left, right = (
-        end_of(vertices, room, x[sticks], power)
-        for end_of, room, power in zip((left_end, right_end), rooms, powers, strict=True)
+        end_of(vertices, room, np.sort(x[nodes]), power)
+        for end_of, room, nodes, power in zip((left_end, right_end), rooms, fitted, powers, strict=True)
     )
-    if changed is not None:  # beside a point where an end turned round, the fit reaches across a kink
+    if changed is not None:  # beside a point where an end turned round, few vertices are left to the fit
         away = [int(power == _ROOT) for power in powers]
         low, high = x[np.clip([first - 1 - away[0], first + away[0]], 0, len(x) - 1)]
         left = float(np.clip(left, low, high))
@@ -129,9 +134,11 @@ def read_stick_zone(
     return StickInterval(left, max(right, left), signs, moved, caught, (strips[0], strips[1]))
 
 
-def _slipped(changed: Array, inside: Indices) -> int:
+def _slipped(changed: Array | None, inside: Indices) -> int:
     """Number of nodes ``inside`` the stick zone, from an end on, up to the first one that has not slipped; 0 if all
-    have."""
+    have, or if this is not known."""
+    if changed is None:
+        return 0
     still = np.flatnonzero(~np.isfinite(changed[inside]))
     return int(still[0]) if len(still) else 0
 
