@@ -19,6 +19,8 @@ the order: like those of q at kinks, they are a part of the change.
 
 At an end tractions are square roots. There the error depends on the element size, not on the order. It also depends on
 the distance to the next end or kink of the profile, as ends of the stick zone are fitted to some elements next to them.
+Where these elements grow fast, they reach as far as the kink: ends are not known better than a fit to fewer elements
+agrees (:attr:`partialslip.friction.zone_ends.StickInterval.fits`).
 """
 
 import math
@@ -159,8 +161,12 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
     first, second = solution.contact_end_places
     errors |= {"left": float(off[first].max()), "right": float(off[second].max())}
     if solution.stick:
-        fit = _FIT[:, None] * np.minimum(sizes / gaps, 1.0) ** 2
-        fitted = _STICK * off + np.minimum(fit.sum(axis=0), _SIDE) * sizes
+        fit = np.minimum((_FIT[:, None] * np.minimum(sizes / gaps, 1.0) ** 2).sum(axis=0), _SIDE) * sizes
+        if not (solution.history and solution.history.turns):  # otherwise strips and nodes that stuck again tell
+            read = np.minimum(np.array(solution.stick.fits) / solution.half_width, _SIDE * sizes[2:4])
+            reaches = np.isfinite(gaps[:, 2:4]).any(axis=0)  # a fit has no error where nothing is near
+            fit[2:4] = np.maximum(fit[2:4], reaches * read)
+        fitted = _STICK * off + fit
         if solution.dissimilar:
             fitted[2:4] += _PUNCHED * sizes[:4].max() if solution.slips_when_pressed else _COUPLED * sizes[2:4]
         if solution.history and solution.history.turns:
