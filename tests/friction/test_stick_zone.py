@@ -54,6 +54,43 @@ def test_the_end_is_not_where_all_nodes_of_a_cell_slip():
     assert right_end(vertices, -np.diff(sharp), nodes) == pytest.approx(0.83, abs=1e-9)
 
 
+def read_beside(kink, size, growth, offset):
+    """Stick zone [-1, 1] whose room is the pressure of half-planes under a flat-rounded punch with kinks at +-``kink``
+    (Ciavarella, Hills and Monno 1998), on cells graded to the kinks and to points ``offset`` cells beyond its ends."""
+    end = 1 + offset * size
+    vertices = graded_cells(np.array([-1.3, -end, -kink, kink, end, 1.3]), size, growth)
+    t, weights = np.polynomial.legendre.leggauss(40)
+    ends = np.arcsin(np.clip(vertices, -1, 1))
+    phi = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * t
+    psi = np.arcsin(kink)
+    p = (np.pi - 2 * psi) * np.cos(phi) + np.sin(phi) * np.log(np.abs(np.sin(phi + psi) / np.sin(phi - psi)))
+    p += kink * np.log(np.abs(np.tan((phi + psi) / 2) * np.tan((phi - psi) / 2)))
+    room = np.diff(ends) / 2 * ((p * np.cos(phi)) @ weights)
+    bound = np.full(len(room), room.max())
+    return read_stick_zone((vertices[1:] + vertices[:-1]) / 2, bound, 2 * bound - room, vertices, lambda forces: forces)
+
+
+@pytest.mark.fault
+@pytest.mark.parametrize(("size", "growth"), [(3e-3, 0.35), (6e-4, 0.7)])
+@pytest.mark.parametrize("kink", [0.9, 0.95])
+def test_a_kink_of_the_profile_that_the_fit_reaches_is_seen(kink, size, growth, monkeypatch):
+    """Deliberate fault: the second fit is as long as the first."""
+
+    def zones():
+        return [read_beside(kink, size, growth, offset) for offset in (-0.45, -0.2, 0.1, 0.3)]
+
+    errors = [abs(zone.right - 1) for zone in zones()]
+    assert max(errors) > 8e-3 * size
+    assert all(error < 1.6 * zone.fits[1] for error, zone in zip(errors, zones(), strict=True))
+    monkeypatch.setattr(zone_ends, "_NEAREST", zone_ends._VERTICES)
+    assert all(zone.fits == (0, 0) for zone in zones())
+
+
+def test_without_a_kink_long_and_short_fits_agree():
+    zone = read_beside(1e-6, 3e-3, 0.35, 0.3)
+    assert max(zone.fits) < 3e-4 * 3e-3
+
+
 def test_a_zone_smaller_than_a_cell_is_where_the_slip_turns_round():
     zone = read(0 * X, signs=(-1, 1))
     assert zone.left == zone.right == pytest.approx(0, abs=0.025)
