@@ -15,7 +15,7 @@ strains by 2 e, and is off by the length l, lets points ahead slip by too much o
 with l = L. Where waits and lengths are not in proportion, the way between the jumps before and after, by interpolation,
 passes the middle of the jump at a distance, and its sides at up to twice that: this is l, at most L. It rises from 0
 since the jump before and falls to 0 until the jump after: d is 2/5 of that time. A short hop just before a long jump
-hides nothing of it. l is L where there are no such jumps; d is then how long the end waited.
+hides nothing of it. l is L where there are no such jumps; d is then how long the end waited, as it is for a part.
 
 An error of s that comes and goes within an interval answers with the change of w over the interval. Beside the end,
 where w is singular, that is too much: an error that grows from one side of the interval to the other answers with the
@@ -115,8 +115,8 @@ def _jumps(solution: MeshSolution) -> tuple[Array, Array]:
     cut = (intervals[0] < stick.left) | (intervals[1] > stick.right)
     waited = _waited(since, first, last)
     apart, away = _off_the_way(since[first], intervals, waited)
-    apart = np.maximum(apart, np.where(cut, lengths / 2, 0.0))
-    off = np.hypot(_REGULAR * waited * lengths**1.5, _OFF * away * apart**1.5)
+    parted = np.where(cut, waited * (lengths / 2) ** 1.5, 0.0)
+    off = np.hypot(_REGULAR * waited * lengths**1.5, _OFF * np.maximum(away * apart**1.5, parted))
     errors = strain * off / np.sqrt(stick.right - stick.left)
     left = (intervals[0] < stick.right) & (intervals[1] > stick.left)
     return intervals[:, left], errors[left]
