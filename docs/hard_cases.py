@@ -89,7 +89,7 @@ def _rig(scene: Scene) -> Iterable[str]:
     """What moves and holds finite bodies."""
     load, bodies = scene.load, (scene.bodies.upper, scene.bodies.lower)
     if load.displacement is not None:
-        yield f"plates moved by {max(load.displacement):g} m"
+        yield f"moved by {max(load.displacement):g} m"
     if load.spring:
         yield f"spring of {load.spring:g} Pa"
     for body in bodies:
