@@ -154,11 +154,12 @@ def test_coupling_of_the_wrong_sign(monkeypatch, red):
 @pytest.mark.slow
 @pytest.mark.fault
 def test_forces_handed_over_node_by_node(monkeypatch, sound, red):
-    """Node to segment: displacements of the other body interpolated at the nodes, in place of the projection."""
+    """Node to segment: displacements of the other body interpolated at the nodes, in place of the projection. p
+    scatters, and finer meshes leave 3e-3 to 6e-3 of it: at an accuracy of 1e-4 this is beyond the bar."""
 
     def interpolated(onto, other):
         return np.array([np.interp(onto.x, other.x, unit) for unit in np.eye(len(other.x))]).T
 
-    scene = sound(LARGE, "fem.lower_size=1.3", "fem.accuracy=3e-4")
+    scene = sound(LARGE, "fem.lower_size=1.3", "fem.accuracy=1e-4")
     monkeypatch.setattr(contact, "transfer", interpolated)
     red.comparison("p", scene)
