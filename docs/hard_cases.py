@@ -76,8 +76,7 @@ def _loads(scene: Scene) -> list[str]:
     more += _rig(scene)
     if scene.fem.size:
         more.append(f"elements {scene.fem.size:g} a")
-    known = load.displacement is None
-    near = "found" if not known else f"1 - {1 - share:.0e}" if 0.99 < share < 1 else f"{share:.3g}"
+    near = "found" if load.displacement is not None else f"1 - {1 - share:.0e}" if 0.99 < share < 1 else f"{share:.3g}"
     given = scene.friction.given
     frictions = ", ".join(f"{each:g}" for each in given) if isinstance(given, tuple) else f"{given:g}"
     b = getattr(scene.profile, "b", None)

@@ -304,9 +304,7 @@ def _error(submission: Submission, mark: Mark | None, number: str) -> str:
         return "*none*"
     if mark is None:
         return "–"
-    code = CODES.get(submission.meta.code.removeprefix("partialslip "))
-    start = _start()["start"][code.method] if isinstance(code, Own) else 0.0
-    return f"{mark.error:.1e} ({mark.worst}; {float(f'{answer.cpu_s + start:.2g}'):g} s)"
+    return f"{mark.error:.1e} ({mark.worst}; {_seconds(submission, number)})"
 
 
 def _standings(found: Sequence[Submission]) -> str:
@@ -337,11 +335,22 @@ def _table(problems: Mapping[str, Problem], found: Sequence[Submission], first: 
 
 def _whole(submission: Submission, number: str, cell: str) -> str:
     """``cell`` of the table; for a method of partialslip with the seconds of a whole process beside the solution's."""
-    code = CODES.get(submission.meta.code.removeprefix("partialslip "))
-    if not (isinstance(code, Own) and cell.endswith(" s)")):
+    if not (_own(submission) and cell.endswith(" s)")):
         return cell
-    whole = submission.answers[number].cpu_s + _start()["start"][code.method]
-    return f"{cell.removesuffix(' s)')}; {whole:.2g} s)"
+    return f"{cell.removesuffix(' s)')}; {_seconds(submission, number)})"
+
+
+def _seconds(submission: Submission, number: str) -> str:
+    """CPU seconds of a whole process: an answer of a method of partialslip has those of the solution."""
+    own = _own(submission)
+    whole = submission.answers[number].cpu_s + (_start()["start"][own.method] if own else 0.0)
+    return f"{float(f'{whole:.2g}'):g} s"
+
+
+def _own(submission: Submission) -> Own | None:
+    """The method of partialslip that answers, if one does."""
+    code = CODES.get(submission.meta.code.removeprefix("partialslip "))
+    return code if isinstance(code, Own) else None
 
 
 @functools.cache

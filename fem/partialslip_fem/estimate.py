@@ -303,8 +303,7 @@ def _kink_errors(solution: MeshSolution, sizes: Array) -> list[float]:
     cells = np.clip(np.searchsorted(vertices, kinks), 1, len(vertices) - 1)
     share = (kinks - vertices[cells - 1]) / (vertices[cells] - vertices[cells - 1])
     parts = np.where(_turned(solution), _TURNED_KINK * np.minimum(share, 1 - share), _KINK)
-    errors: list[float] = np.hypot.reduce(parts * _kink_strengths(solution) * sizes, axis=1).tolist()
-    return errors
+    return np.hypot.reduce(parts * _kink_strengths(solution) * sizes, axis=1).tolist()
 
 
 def _kink_strengths(solution: MeshSolution) -> Array:

@@ -68,10 +68,10 @@ def solve_on_first_mesh(
         grading = Grading((-reach, reach), sizes, _GROWTH / finer)
         try:
             solution = solving.mesh_and_solve(problem, width * reach, grading, clock, keep, check, alone=alone)
-        except SlidesError:
+        except SlidesError as slides:
             if finer >= _FINEST or problem.meshed:
                 raise
-            meshes, factored, finer = meshes + 1, factored + len(problem.parts), 2 * finer
+            meshes, factored, finer = meshes + 1, factored + slides.factored, 2 * finer
             continue
         meshes, factored = meshes + 1, factored + solution.factored
         if solution.enclosed:

@@ -76,7 +76,11 @@ def mesh_and_solve(
     bodies, shared = condense(mesh_bodies(problem, width, grading, clock), problem, width, clock), Shared()
     if keep:
         keep.add(key, bodies, shared)
-    return solve_contact(problem, bodies, len(bodies), clock, check, shared, before)
+    try:
+        return solve_contact(problem, bodies, len(bodies), clock, check, shared, before)
+    except coupled.SlidesError as slides:
+        slides.factored = len(bodies)
+        raise
 
 
 def solve_on_meshes(

@@ -2,6 +2,7 @@
 
 import functools
 import os
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -28,8 +29,7 @@ class _Limit:
         with self._lock:
             if not self._running:
                 _take_over()
-                # SciPy brings a library of its own: a new controller sees the libraries that are loaded by now
-                self._limited = ThreadpoolController().limit(limits=1, user_api="blas")
+                self._limited = _controller(len(sys.modules)).limit(limits=1, user_api="blas")
             self._running += 1
         try:
             yield
@@ -43,6 +43,14 @@ class _Limit:
 
     def _begin_anew(self) -> None:
         self._lock = threading.Lock()
+
+
+@functools.lru_cache(maxsize=1)
+def _controller(modules: int) -> ThreadpoolController:
+    """Controller of the libraries that are loaded after so many ``modules``: SciPy brings a library of its own. To look
+    for them takes forty times as long as to limit them."""
+    del modules
+    return ThreadpoolController()
 
 
 def _take_over() -> None:

@@ -37,7 +37,10 @@ _Off = Callable[[Array, Array], float]  # relative L2 difference of forces
 
 
 class SlidesError(InputError):
-    """Bodies that a displacement moves slide, on this mesh: a finer one is less stiff, and bears less Q."""
+    """Bodies that a displacement moves slide, on this mesh: a finer one is less stiff, and bears less Q. ``factored``:
+    factorisations that were made for this mesh."""
+
+    factored = 0
 
 
 @dataclass(frozen=True)

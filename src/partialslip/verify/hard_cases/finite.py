@@ -32,8 +32,8 @@ carries, and a coarse mesh, which is too stiff, slides where a fine one does not
 small difference. A soft spring hands over a force and a rigid one a displacement: formulas with either stiffness in
 a denominator lose all digits at the other limit. A pin in the contact line must not turn, although the angle is an
 unknown without a load. A pulled block moves by a thousand times the slip where it touches, and grips that carry
-equal shares must leave the contact as it is between half-planes. The blocks are 4000 times as wide as the half-
-width of the contact. Where half-planes have an answer, it must come out within the accuracy of 1e-3. Under
+equal shares must leave the contact as it is between half-planes. The blocks are 4000 times as wide as the
+half-width of the contact. Where half-planes have an answer, it must come out within the accuracy of 1e-3. Under
 displacements they have none, and only the conditions on the result are judged.
 """,
 )

@@ -161,12 +161,12 @@ class Bodies:
     def advance(self, share, bisections):
         """Solve the next ``share`` of an increment, in halves where that does not converge. Whether it did."""
         ops.integrator("LoadControl", share)
-        if self.fails(1):
+        if self.fails():
             return bool(bisections) and all(self.advance(share / 2, bisections - 1) for _ in range(2))
         ops.integrator("LoadControl", 0.0)
         before = self.pressed()
         for _ in range(_REPEATS):
-            if self.fails(1):
+            if self.fails():
                 return False
             now = self.pressed()
             if np.abs(now - before).max() <= _REST * np.abs(now).max():
@@ -174,11 +174,11 @@ class Bodies:
             before = now
         return False
 
-    def fails(self, count):
+    def fails(self):
         """Solve by one of the algorithms; whether none converges."""
         for algorithm in _ALGORITHMS:
             ops.algorithm(*algorithm)
-            if not ops.analyze(count):
+            if not ops.analyze(1):
                 return False
         return True
 
