@@ -79,6 +79,26 @@ def test_a_jump_of_which_the_zone_has_kept_a_part_is_seen_whole(monkeypatch):
     assert kept(0.1) < 0.8 * 0.1**0.5
 
 
+@pytest.mark.parametrize("count", [301, 3001])
+def test_slip_that_stays_off_counts_whole_however_many_nodes_slipped(count):
+    """The end turned round at 0.3 and took back all points up to 1: their slip is off by the same amount. At the left
+    end of [-1, 1] the dislocation at 0.3 makes a singularity of the strength 1/(pi sqrt(2)) s w(0.3)."""
+    x = np.linspace(-1.5, 1.5, count)
+    at = float(x[np.searchsorted(x, 0.3)])
+
+    def solution(slip):
+        history = SimpleNamespace(lasting=None, stuck=None, slip=np.where(x >= at, 2 * slip, 0.0))
+        line = SimpleNamespace(x=x, order=1)
+        return SimpleNamespace(
+            stick=StickInterval(-1.0, 1.0, (1, 1)), history=history, lower=line, nodes=np.arange(count)
+        )
+
+    slip, strength = 1e-3, 0.7
+    moves = 2 * slip * np.sqrt((1 - 0.3) / (1 + 0.3)) / (np.pi * np.sqrt(2)) / strength
+    found = locked_in(solution(0.0), solution(slip), np.array([strength, strength]))
+    assert found[0] == pytest.approx(locked._DIFFERENT * moves, rel=0.1)
+
+
 def test_regular_jumps_leave_little_of_what_irregular_ones_leave():
     """Jumps to and fro about an even way let slip about right on both sides; l is the length of a jump only where there
     is no such way."""
