@@ -242,6 +242,15 @@ def test_targets_beside_the_table_of_a_coarse_mesh_are_named(coarse, capsys):
     assert re.search(r"PS-02.csv alone: grade [DE] ", capsys.readouterr().out)
 
 
+def test_a_table_that_is_too_coarse_to_compare_with_is_named(folder, capsys):
+    """Targets beside a table of few rows, in which no slip zone is seen."""
+    head, *rows = (folder / "PS-02.csv").read_text("utf-8").split()
+    (folder / "PS-02.csv").write_text("\n".join([head, *rows[::32]]), "utf-8")
+    changed_answer(**TRUE)(folder)
+    main(["benchmark", "check", "mine"])
+    assert re.search(r"PS-02.csv alone: .*; \d+ are not: its rows are too far apart", capsys.readouterr().out)
+
+
 @pytest.mark.fault
 def test_a_table_that_is_not_compared_is_seen(coarse, capsys, monkeypatch):
     """Every difference counts as an error of reading."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from msgspec.structs import replace
 
-from partialslip.benchmark.grade import NOT_GRADED, NOT_OFFERED, graded
+from partialslip.benchmark.grade import LIMITS, NOT_GRADED, NOT_OFFERED, graded
 from partialslip.benchmark.measured import Quantity, quantities
 from partialslip.benchmark.problem import Problem
 from partialslip.benchmark.submission import Answer
@@ -113,9 +113,12 @@ def remark(problem: Problem, answer: Answer, table: Table) -> str:
     off = "" if alone.error is None else f" {alone.error:.1e}"
     line = f"{name} alone: {told} ({alone.worst}{off})"
     both = [key for key, value in answer.values.items() if value is not None and key in table.values]
-    if both:
-        worst = max(both, key=table.allowed)
-        line += f"; {len(both)} values are compared with it, to {table.allowed(worst):.1e} at worst ({worst})"
+    compared = [key for key in both if table.allowed(key) <= max(LIMITS.values())]  # others tell no grade from another
+    if compared:
+        worst = max(compared, key=table.allowed)
+        line += f"; {len(compared)} values are compared with it, to {table.allowed(worst):.1e} at worst ({worst})"
+    if len(compared) < len(both):
+        line += f"; {len(both) - len(compared)} are not: its rows are too far apart"
     taken = [key for key in table.values if key not in answer.values]
     named = ", ".join(taken) if len(taken) <= _NAMED else f"{len(taken)} values"
     return line + (f"; read from it: {named}" if taken else "")

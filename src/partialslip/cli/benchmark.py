@@ -74,8 +74,8 @@ def add(commands: Commands) -> None:
     reads.set_defaults(command=_read)
 
     scores = parts.add_parser("score", help="grade the answers of a code",
-                              description="Grade the answers of a code: a folder with meta.toml and PS-01.json and "
-                              "so on.",
+                              description="Grade the answers of a code: a folder with meta.toml, PS-01.json and so "
+                              "on. Values that are left out are read from PS-01.csv, a table of tractions.",
                               unjudged=_LACKING,
                               examples=["partialslip benchmark score my-answers",
                                         "partialslip benchmark score my-answers --problems PS-0*"])  # fmt: skip
