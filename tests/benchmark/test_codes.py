@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from partialslip.benchmark import graded, read_problems, write_submission
+from partialslip.benchmark import graded, read_problems, read_submission, write_submission
 from partialslip.benchmark.codes import CODES, code_answers
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import HOST as GETFEM
@@ -17,7 +17,6 @@ from partialslip.benchmark.codes.opensees import HOST as OPENSEES
 from partialslip.benchmark.codes.opensees import OpenSees
 from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.codes.process import python_with
-from partialslip.benchmark.submission import read_submission
 from partialslip.cli import main
 from partialslip.errors import InputError, PartialslipError
 from partialslip.run import run

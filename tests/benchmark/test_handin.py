@@ -12,9 +12,9 @@ import pytest
 import tomli_w
 import yaml
 
-from partialslip.benchmark import handed_in, read_problems, read_submission
+from partialslip.benchmark import handed_in, read_problems, read_submission, tables
 from partialslip.benchmark import handin as checks
-from partialslip.benchmark.measured import answer_from
+from partialslip.benchmark.tables import answer_from
 from partialslip.cli import main
 from partialslip.run import run
 
@@ -151,7 +151,8 @@ SPOILED = {
     "short ladder": (changed_answer(values={}, note="none", ladder=[RUNG]), r"ladder: must have 3 meshes or more"),
     "ladder that ends elsewhere": (changed_answer(ladder=[RUNG | {"h": 4 - k} for k in range(3)]),
                                    r"PS-02.json: values: must be those of the last mesh of the ladder"),
-    "neither value nor reason": (changed_answer(values={}), r"values: must have a value, or note must say why"),
+    "neither value nor reason": (lambda folder: ((folder / "PS-02.csv").unlink(), changed_answer(values={})(folder)),
+                                 r"values: must have a value, or note must say why"),
     "value in mm": (lambda folder: ((folder / "PS-02.csv").unlink(), changed_answer(a=1.0)(folder)),
                     r"PS-02.json: values.a = 1: must be within .* m of the target; all values are in SI units"),
     "value that the table has not": (changed_answer(p_max=PROBLEM.targets["p_max"].value * 1.001),
@@ -191,6 +192,82 @@ def test_a_check_that_is_left_out_is_seen(spoil, folder, capsys, monkeypatch):
         test_a_spoiled_folder_is_refused_in_a_line(spoil, folder, capsys)
 
 
+@pytest.fixture
+def coarse(folder):
+    """Answer with the values of the targets, beside the table of a coarse mesh of linear elements."""
+    solved = run(PROBLEM.scene.replace({"fem.size": 0.1, "fem.order": 1}), "fem")["fem"]
+    x = np.linspace(-1.05, 1.05, 501) * solved.a
+    rows = np.column_stack([x, *solved.traction.at(x)[:2]])
+    np.savetxt(folder / "PS-02.csv", rows, delimiter=",", header="x,p,dq", comments="")
+    changed_answer(**TRUE)(folder)
+    return folder
+
+
+TRUE = {key: PROBLEM.targets[key].value for key in PROBLEM.targets}
+
+
+def test_a_table_checks_values_and_does_not_replace_them(folder, capsys):
+    """The values of the targets are those of the exact table to the error of reading it, and keep their grade."""
+    changed_answer(**TRUE)(folder)
+    assert main(["benchmark", "check", "mine"]) == 0
+    beside = capsys.readouterr().out
+    assert re.search(r"PS-02.csv alone: grade [AB] .*; 14 values are compared with it, to \S+ at worst", beside)
+    assert read_submission(folder, KNOWN).answers["PS-02"].values == TRUE
+    (folder / "PS-02.csv").unlink()
+    assert main(["benchmark", "check", "mine"]) == 0
+    assert capsys.readouterr().out.splitlines() == [line for line in beside.splitlines() if "PS-02.csv" not in line]
+
+
+def test_values_that_an_answer_leaves_out_are_read_from_its_table(folder, capsys):
+    told = read_submission(folder, KNOWN).answers["PS-02"].values
+    changed_answer(values={"a": told["a"], "slip": 1.0})(folder)
+    assert read_submission(folder, KNOWN).answers["PS-02"].values == told | {"slip": 1.0}
+    assert main(["benchmark", "score", "mine"]) == 0
+    assert "1 of 27 problems count" in capsys.readouterr().out
+    changed_answer(values={key: told[key] for key in told if key not in ("m", "n")} | {"m": None})(folder)
+    assert read_submission(folder, KNOWN).answers["PS-02"].values == told | {"m": None}
+    assert main(["benchmark", "score", "mine"]) == 4
+    assert "; read from it: n\n" in capsys.readouterr().out
+
+
+def test_targets_beside_the_table_of_a_coarse_mesh_are_named(coarse, capsys):
+    """Values copied from the targets."""
+    assert (coarse / "PS-02.csv").is_file()
+    assert main(["benchmark", "check", "mine"]) == 2
+    lines = capsys.readouterr().out.splitlines()
+    assert all(
+        re.search(r"values\.\S+ = \S+: must be \S+ within \S+ (m|Pa), as PS-02.csv has it", line) for line in lines
+    )
+    assert main(["benchmark", "score", "mine"]) == 0
+    assert re.search(r"PS-02.csv alone: grade [DE] ", capsys.readouterr().out)
+
+
+def test_a_table_that_is_too_coarse_to_compare_with_is_named(folder, capsys):
+    """Targets beside a table of few rows, in which no slip zone is seen."""
+    head, *rows = (folder / "PS-02.csv").read_text("utf-8").split()
+    (folder / "PS-02.csv").write_text("\n".join([head, *rows[::32]]), "utf-8")
+    changed_answer(**TRUE)(folder)
+    main(["benchmark", "check", "mine"])
+    assert re.search(r"PS-02.csv alone: .*; \d+ are not: its rows are too far apart", capsys.readouterr().out)
+
+
+@pytest.mark.fault
+def test_a_table_that_is_not_compared_is_seen(coarse, capsys, monkeypatch):
+    """Every difference counts as an error of reading."""
+    monkeypatch.setattr(tables, "_SURE", np.inf)
+    with pytest.raises(AssertionError):
+        test_targets_beside_the_table_of_a_coarse_mesh_are_named(coarse, capsys)
+
+
+def test_an_unknown_key_of_a_ladder_is_named_once(folder, capsys):
+    (folder / "PS-02.csv").unlink()
+    values = {"a": TRUE["a"], "b": 1.0}
+    changed_answer(values=values, ladder=[{"h": 4 - k, "values": values} for k in range(3)])(folder)
+    assert main(["benchmark", "check", "mine"]) == 2
+    (line,) = capsys.readouterr().out.splitlines()
+    assert "values.b: no target has this key" in line
+
+
 def test_every_thing_that_is_wrong_has_a_line(folder, capsys):
     without_meta("author")(folder)
     written("more.inp", DECK)(folder)
@@ -205,7 +282,9 @@ def test_every_thing_that_is_wrong_has_a_line(folder, capsys):
 def test_an_answer_that_lacks_a_headline_target_is_not_judged(folder, capsys):
     changed_answer(m=None)(folder)
     assert main(["benchmark", "check", "mine"]) == 4
-    assert "not judged: PS-02 (m)" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "not judged: PS-02 (m)" in told
+    assert told.endswith("can be handed in, but problems that are not judged do not count (exit code 4)\n")
 
 
 def test_a_folder_that_is_none_has_a_line(folder, capsys):
@@ -236,3 +315,5 @@ def test_the_workflow_runs_commands_that_there_are(folder, capsys):
     words = shlex.split(command.replace('"$ANSWERS"', "mine"))[1:]
     assert main(words) == 0
     assert "accepted" in capsys.readouterr().out
+    assert told["env"]["PACKAGE"] == ""  # no index has the package: the user names it, and the step asks for it
+    assert any("${PACKAGE:?" in step for step in runs)

@@ -8,9 +8,19 @@ import xml.etree.ElementTree as ET
 import msgspec
 import pytest
 
-from partialslip.benchmark import Answer, Meta, Rung, Submission, badge, badge_names, climbs, read_problems
+from partialslip.benchmark import (
+    Answer,
+    Meta,
+    Rung,
+    Submission,
+    badge,
+    badge_names,
+    climbs,
+    read_problems,
+    read_submission,
+    write_submission,
+)
 from partialslip.benchmark.codes import code_answers
-from partialslip.benchmark.submission import read_submission, write_submission
 from partialslip.errors import InputError
 
 PROBLEM = read_problems()["PS-02"]

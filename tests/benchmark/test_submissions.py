@@ -1,5 +1,7 @@
 """Answers of any code are plain files; what is wrong with them is said in one line."""
 
+import csv
+import io
 import json
 import zipfile
 
@@ -19,7 +21,8 @@ from partialslip.benchmark import (
 from partialslip.benchmark.book import book_page
 from partialslip.benchmark.codes import CODES, code_answers
 from partialslip.benchmark.codes.own import Own
-from partialslip.benchmark.measured import answer_from
+from partialslip.benchmark.problem import read_frozen
+from partialslip.benchmark.tables import answer_from
 from partialslip.cli import main
 from partialslip.errors import InputError
 from partialslip.origin import made_now
@@ -89,8 +92,13 @@ def test_the_zip_has_all_that_is_needed_and_is_always_the_same(tmp_path):
         assert {"PS-02/model.json", "PS-02/lower.msh", "PS-02/upper.inp", "PS-02/calculix-mortar.inp"} <= names
         told = json.loads(archive.read("PS-02/problem.json"))
         readme = archive.read("README.txt").decode()
+        targets = archive.read("PS-02/targets.csv").decode()
     assert told["data"]["load"]["P"] == SOME["PS-02"].scene.load.P
     assert told["targets"]["m"]["value"] == SOME["PS-02"].targets["m"].value
+    assert told["checksum"] == read_frozen().checksums["PS-02"]
+    assert told["data"]["load"].keys() == {"P", "Q", "sigma"}  # neither null nor settings
+    (row,) = (row for row in csv.DictReader(io.StringIO(targets)) if row["key"] == "dq@0.5")
+    assert float(row["x"]) == told["targets"]["dq@0.5"]["x"] == 0.5 * told["targets"]["a"]["value"]
     for key in {key.partition("@")[0] for problem in read_problems().values() for key in problem.targets}:
         assert key in readme.replace("@0.5", ""), key  # every key is explained
     assert max(map(len, readme.splitlines())) <= 120

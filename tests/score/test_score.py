@@ -13,6 +13,7 @@ from partialslip import load_scene, run, score
 from partialslip.cli import main
 from partialslip.judge import Outcome
 from partialslip.output import place
+from partialslip.score.samples import Samples
 
 SCENES = ("hertz-shear", "hertz-small-tension", "hertz-large-tension", "fretting-aluminium", "flat-rounded")
 FIXTURES = Path(__file__).parent
@@ -310,3 +311,18 @@ def test_friction_that_varies_along_the_contact(tmp_path):
     assert (comparison.m, comparison.n) == pytest.approx((0, 0), abs=5e-5)
     assert seen.settings["f_seen"] == pytest.approx(0.6, rel=1e-3)
     assert score(scene.replace(friction={"f": 0.6}), path).results[path.name].m is None
+
+
+def test_every_second_point_is_a_coarser_table():
+    """Points are left out; means over cells become means over two cells, so that no force is lost."""
+    x = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 6.0, 8.0])
+    points = Samples(x, x**2, -x)
+    assert points.coarser(1).x.tolist() == [1.0, 4.0, 6.0]
+    assert points.coarser(0).dq.tolist() == [0.0, -2.0, -5.0, -8.0]
+    assert points.coarser(0).p1 is None
+    cells = np.array([-0.5, 0.5, 1.5, 3.0, 4.5, 5.5, 7.0, 9.0])
+    means = Samples(x, x**2, -x, cells=cells)
+    for first in (0, 1):
+        coarse = means.coarser(first)
+        assert len(coarse.cells) == len(coarse.p) + 1
+        assert coarse.p @ np.diff(coarse.cells) == pytest.approx((means.p * np.diff(cells))[first:].sum())

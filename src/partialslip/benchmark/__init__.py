@@ -4,6 +4,7 @@ from partialslip.benchmark.badge import badge as badge
 from partialslip.benchmark.badge import badge_names as badge_names
 from partialslip.benchmark.book import book_page as book_page
 from partialslip.benchmark.book import book_zip as book_zip
+from partialslip.benchmark.folder import read_submission as read_submission
 from partialslip.benchmark.grade import Graded as Graded
 from partialslip.benchmark.grade import Mark as Mark
 from partialslip.benchmark.grade import graded as graded
@@ -24,7 +25,6 @@ from partialslip.benchmark.submission import Answer as Answer
 from partialslip.benchmark.submission import Meta as Meta
 from partialslip.benchmark.submission import Rung as Rung
 from partialslip.benchmark.submission import Submission as Submission
-from partialslip.benchmark.submission import read_submission as read_submission
 from partialslip.benchmark.submission import write_submission as write_submission
 
 __all__ = [

@@ -1,7 +1,10 @@
 """The book of the benchmark: a page with all problems and the scoreboard, and a zip of plain data."""
 
+import tomllib
 from collections.abc import Mapping, Sequence
+from importlib.metadata import version
 from importlib.resources import files as resources
+from typing import Any
 
 import msgspec
 
@@ -17,8 +20,9 @@ from partialslip.output.files import csv_text, json_text, zipped
 from partialslip.output.page import render_page
 from partialslip.report import rows
 from partialslip.report.sketch import sketch_svg
-from partialslip.scene.writing import scene_tables, scene_toml
+from partialslip.scene.writing import scene_toml
 
+_IDLE = ("steps", "sigma_slope")  # display: keys of loads: a setting of partialslip, and zero in all problems
 _COLUMNS = 8  # display: codes side by side in a scoreboard
 
 
@@ -53,32 +57,49 @@ def book_zip(problems: Mapping[str, Problem]) -> bytes:
     readme = (package / "zip_readme.txt").read_text("utf-8")
     limits = ", ".join(f"{grade} {limit:g}" for grade, limit in LIMITS.items())
     listed = "\n".join(f"{number}  {problem.title}" for number, problem in problems.items())
-    content = {"README.txt": readme.format(edition=EDITION, limits=limits, problems=listed).encode()}
+    content = {
+        "README.txt": readme.format(
+            edition=EDITION, version=version("partialslip"), limits=limits, problems=listed
+        ).encode()
+    }
     content["grade.yml"] = (package / "grade.yml").read_bytes()
+    checksums = read_frozen().checksums
     for number, problem in problems.items():
-        own = {name: text.encode() for name, text in _files(problem).items()} | model_files(problem)
+        own = {name: text.encode() for name, text in _files(problem, checksums[number]).items()} | model_files(problem)
         content |= {f"{number}/{name}": data for name, data in own.items()}
     return zipped(content)
 
 
-def _files(problem: Problem) -> dict[str, str]:
-    tables = {key: table for key, table in scene_tables(problem.scene).items() if key not in SETTINGS}
+def _files(problem: Problem, checksum: str) -> dict[str, str]:
+    scene, a = scene_toml(problem.scene, SETTINGS), problem.targets["a"].value
+    listed = [
+        (key, {"x": float(place) * a} if (place := key.partition("@")[2]) else {}, target)
+        for key, target in problem.targets.items()
+    ]
     everything = {
         "number": problem.number,
         "edition": EDITION,
+        "checksum": checksum,
         "title": problem.title,
         "statement": problem.statement,
         "sources": msgspec.to_builtins(problem.sources),
-        "data": tables,
-        "targets": msgspec.to_builtins(dict(problem.targets)),
+        "remark": problem.why,
+        "data": _given(tomllib.loads(scene)),
+        "targets": {key: placed | msgspec.to_builtins(target) for key, placed, target in listed},
     }
-    columns = ("key", "value", "unit", "scale", "uncertainty", "group", "known")
-    lines = [[key, *(getattr(target, name) for name in columns[1:])] for key, target in problem.targets.items()]
+    columns = ("value", "unit", "scale", "uncertainty", "group", "known")
+    lines = [[key, placed.get("x"), *(getattr(target, name) for name in columns)] for key, placed, target in listed]
     return {
         "problem.json": json_text(everything),
-        "scene.toml": scene_toml(problem.scene, SETTINGS),
-        "targets.csv": csv_text(columns, lines),
+        "scene.toml": scene,
+        "targets.csv": csv_text(("key", "x", *columns), lines),
     }
+
+
+def _given(tables: dict[str, Any]) -> dict[str, Any]:
+    """``tables`` of a scene without the keys that are no part of the problem."""
+    load = {key: value for key, value in tables["load"].items() if key not in _IDLE}
+    return tables | {"load": load}
 
 
 def _boards(problems: Mapping[str, Problem], submissions: Sequence[Submission]) -> list[Board]:
@@ -114,7 +135,7 @@ def _data(problem: Problem) -> list[tuple[str, str, str]]:
     found, table = [], ""
     for line in rows.settings(problem.scene):
         table = line[0] or table
-        if table not in SETTINGS:
+        if table not in SETTINGS and line[1] not in _IDLE:
             found.append(line)
     return found
 

@@ -4,9 +4,10 @@ import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
-from partialslip.benchmark.measured import answer_from
+from partialslip.benchmark.folder import examined
 from partialslip.benchmark.problem import Problem
-from partialslip.benchmark.submission import META, Answer, Meta, Submission, examined
+from partialslip.benchmark.submission import META, Answer, Meta, Submission
+from partialslip.benchmark.tables import Table, differences
 from partialslip.errors import InputError
 from partialslip.inputfile import checksum
 
@@ -14,7 +15,6 @@ _DUE = {"author": "who ran the code", "version": "the version of the code", "set
         "machine": "processor and system"}  # fmt: skip
 _LARGEST = 2**30  # limit: bytes of an input file
 _WILD = 10.0  # limit: largest error, in the scale of a target: no code is so far off, but values in mm and MPa are
-_SAME = 1e-6  # limit: largest difference of a value from that of its table, in the scale of the target
 
 
 def handed_in(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> tuple[Submission | None, list[str]]:
@@ -22,8 +22,8 @@ def handed_in(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> t
 
     The folder must be one that :func:`read_submission` reads. All of ``meta.toml`` must be filled in. Each file of the
     folder must be ``meta.toml``, an answer PS-01.json, a table of tractions PS-01.csv, a hidden file, or an input file
-    that ``inputs`` lists with its checksum. A value must be the one that the table beside it gives, within 1e-6 of the
-    scale of the target.
+    that ``inputs`` lists with its checksum. A value must be the one that the table beside it gives, within the error
+    with which it can be read there (:mod:`partialslip.benchmark.tables`).
 
     Parameters
     ----------
@@ -37,13 +37,12 @@ def handed_in(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> t
         The submission if nothing is wrong, and a line for each thing that is wrong.
     """
     path = Path(folder)
-    meta, answers, wrong = examined(path, known)
-    if meta is not None:
-        wrong += _meta_faults(path, meta)
-        wrong += _input_faults(path, meta)
-    for number, answer in answers.items():
-        wrong += _answer_faults(path, known[number], answer)
-    return (Submission(meta, answers) if meta is not None and not wrong else None), wrong
+    found = examined(path, known)
+    if found.meta is not None:
+        found.wrong.extend((*_meta_faults(path, found.meta), *_input_faults(path, found.meta)))
+    for number, answer in found.answers.items():
+        found.wrong.extend(_answer_faults(path, known[number], answer, found.tables.get(number)))
+    return (None if found.wrong else found.submission(known)), found.wrong
 
 
 def _meta_faults(folder: Path, meta: Meta) -> Iterator[str]:
@@ -95,24 +94,15 @@ def _inside(file: Path, folder: Path) -> bool:
     return file.resolve().is_relative_to(folder.resolve())
 
 
-def _answer_faults(folder: Path, problem: Problem, answer: Answer) -> Iterator[str]:
-    file, table = folder / f"{problem.number}.json", folder / f"{problem.number}.csv"
-    targets = problem.targets
+def _answer_faults(folder: Path, problem: Problem, answer: Answer, table: Table | None) -> Iterator[str]:
+    file, targets = folder / f"{problem.number}.json", problem.targets
     given = {key: value for key, value in answer.values.items() if value is not None and key in targets}
-    if not given and not answer.note.strip():
+    if not given and not table and not answer.note.strip():
         yield f"{file}: values: must have a value, or note must say why there is none"
     for key, value in given.items():
         target = targets[key]
         if not abs(value - target.value) <= _WILD * target.scale:
             most = f"{_WILD * target.scale:.3g} {target.unit}"
             yield f"{file}: values.{key} = {value:.9g}: must be within {most} of the target; all values are in SI units"
-    if os.path.lexists(table):
-        try:
-            told = answer_from(problem, table).values
-        except InputError as error:
-            yield str(error)
-            return
-        for key, value in given.items():
-            seen = told.get(key)
-            if seen is not None and not abs(value - seen) <= _SAME * targets[key].scale:
-                yield f"{file}: values.{key} = {value:.9g}: must be {seen:.9g}, as {table.name} has it, or left out"
+    if table:
+        yield from (f"{file}: {line}" for line in differences(problem, answer, table, f"{problem.number}.csv"))

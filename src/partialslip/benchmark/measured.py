@@ -1,10 +1,8 @@
-"""Quantities of the benchmark, taken from a result or a table: what a target is, and what a method's values are."""
+"""Quantities of the benchmark, taken from a result: what a target is, and what a method's values are."""
 
-from collections.abc import Iterator, Mapping
-from pathlib import Path
+from collections.abc import Iterator
 from typing import NamedTuple
 
-import msgspec
 import numpy as np
 
 from partialslip.benchmark.problem import Problem
@@ -12,8 +10,6 @@ from partialslip.benchmark.submission import Answer
 from partialslip.fatigue import assess
 from partialslip.result import Result
 from partialslip.scene import Scene
-from partialslip.score.method import scored
-from partialslip.score.read import read_tractions
 from partialslip.units import Dimension
 
 GROUPS = ("contact", "stick", "tractions", "levels", "slip", "stress")  # levels: q1 and q2
@@ -114,17 +110,3 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
         rating = assess(scene, result, ["swt"]).ratings["swt"]
         for key, spot in (("swt", rating.surface), ("swt_line", rating.averages["line"])):
             yield key, Quantity(spot.value, "Pa", spot.value, "stress", "q")
-
-
-def answer_from(problem: Problem, file: str | Path, columns: Mapping[str, str] | None = None) -> Answer:
-    """Answer to ``problem`` from the tractions in ``file``: a, m and n as :func:`partialslip.score` finds them, and its
-    ``columns``.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
-    """
-    samples = read_tractions(Path(file), problem.scene, (1.0, 1.0, 1.0), 1, None, columns)
-    answer = answer_of(problem, scored(problem.scene, samples, "table", str(file)))
-    return msgspec.structs.replace(answer, cpu_s=None, memory_mb=None)  # those of reading

@@ -28,10 +28,10 @@ def files(problem: Problem) -> dict[str, bytes]:
 
     ``model.json``: bodies, supports and load steps in SI units. ``lower`` and ``upper`` with .msh, .inp, .med (if h5py
     is installed) and .vtu: a body's mesh of quadrilaterals, in m, with the groups contact, face, back, left, right
-    and, if there is a holder, flanks. ``calculix-mortar.inp``, ``calculix-penalty.inp`` and ``abaqus.inp``: decks,
-    of which this project has run those of CalculiX alone.
-    ``moose-untested`` (.i, .msh) and ``code_aster-untested`` (.comm, .mail, .export): decks that nobody of this project
-    has run, where they carry the loads. None where the problem cannot be exported.
+    and, if there is a holder, flanks. ``calculix-mortar.inp`` and ``calculix-penalty.inp``: decks that this project
+    has run. ``abaqus-untested.inp``, ``moose-untested`` (.i, .msh) and
+    ``code_aster-untested`` (.comm, .mail, .export): decks that nobody of this project has run, where they carry the
+    loads. None where the problem cannot be exported.
     """
     scene = gradual(problem.scene)
     try:
@@ -39,10 +39,11 @@ def files(problem: Problem) -> dict[str, bytes]:
         flat = modelled(scene, _SIZE, growth=GROWTH, stiffer=STIFFER)
     except InputError:
         return {}
+    reading = f"partialslip benchmark read {problem.number} JOB.frd -o FOLDER"
     decks = {
-        "calculix-mortar.inp": calculix_deck(scene, flat, "mortar"),
-        "calculix-penalty.inp": calculix_deck(scene, flat, "penalty"),
-        "abaqus.inp": abaqus_deck(scene, flat),
+        "calculix-mortar.inp": calculix_deck(scene, flat, "mortar", reading),
+        "calculix-penalty.inp": calculix_deck(scene, flat, "penalty", reading),
+        f"abaqus-{UNTESTED}.inp": abaqus_deck(scene, flat),
     }
     texts = {"model.json": json_text(_told(made))} | {name: "\n".join(deck) + "\n" for name, deck in decks.items()}
     return {name: text.encode() for name, text in texts.items()} | _untested(scene, flat) | _meshes(made)
@@ -79,8 +80,9 @@ def _told(made: Model) -> dict[str, Any]:
     return {
         "units": "SI: m, N/m, Pa, N; E and nu are those of plane strain, also where the problem is in plane stress",
         "f": made.f,
-        "expected_half_width": made.a,
-        "element_size": made.size,
+        "expected_half_width": float(f"{made.a:.2g}"),  # the half-width is for the code to find
+        "element_size": float(f"{made.size:.2g}"),
+        "overlap": float(f"{made.overlap:.2g}"),
         "bodies": bodies,
         "lower_body": pulled if lower.pulled else uniform,
         "strains": lower.strained.tolist(),

@@ -1,17 +1,15 @@
-"""Submissions: what a code found, as a folder of plain files."""
+"""Submissions: what a code found, and how it is written as a folder of plain files."""
 
-import itertools
 import os
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import msgspec
 import tomli_w
 
-from partialslip.benchmark.problem import Problem, Target
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes, read_text
 from partialslip.output.files import json_text, write_texts
@@ -19,10 +17,9 @@ from partialslip.output.lock import locked
 from partialslip.output.place import NAME as REQUEST
 from partialslip.scene.reading import parse_toml
 from partialslip.scene.table import NO_TEXT
-from partialslip.strictjson import converted, decoded
+from partialslip.strictjson import converted
 
-_LARGEST = 2**20  # limit: bytes of a file
-_FEWEST = 3  # limit: meshes of a ladder
+LARGEST = 2**20  # limit: bytes of a file
 META = "meta.toml"
 # Cyrillic and Greek letters that look like Latin ones.
 _LIKE_LATIN = str.maketrans(
@@ -116,76 +113,11 @@ def _check_text(name: str, text: str) -> None:
 
 
 class Submission(msgspec.Struct, frozen=True):
-    """A code, ``meta``, and its ``answers`` by number of the problem."""
+    """A code, ``meta``, its ``answers`` by number of the problem, and ``remarks`` on their tables of tractions."""
 
     meta: Meta
     answers: dict[str, Answer]
-
-
-def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> Submission:
-    """Read a submission: ``meta.toml``, and a file PS-01.json and so on for each problem that is answered.
-
-    Parameters
-    ----------
-    folder : str or path
-    known : mapping of str to Problem
-        Problems by number.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read, has a field or a value that is not allowed, or answers no problem of the benchmark.
-    """
-    meta, answers, wrong = examined(folder, known)
-    if wrong or meta is None:
-        raise InputError(wrong[0])
-    return Submission(meta, answers)
-
-
-def examined(
-    folder: str | os.PathLike[str], known: Mapping[str, Problem]
-) -> tuple[Meta | None, dict[str, Answer], list[str]]:
-    """Read a submission as far as it can be read. Parameters as for :func:`read_submission`.
-
-    Returns
-    -------
-    Meta or None, dict of str to Answer, list of str
-        The answers that can be read, and a line for each thing that is wrong. There is a line if meta is None.
-    """
-    path = Path(folder)
-    if not path.is_dir():
-        return None, {}, [f"{folder}: must be a folder with {META} and PS-01.json and so on"]
-    meta, answers, wrong = None, dict[str, Answer](), list[str]()
-    try:
-        meta = _read_meta(path)
-    except InputError as error:
-        wrong.append(str(error))
-    files = sorted(path.glob("*.json"))
-    for file in files:
-        number = file.stem
-        if number not in known:
-            wrong.append(f"{file}: no problem has this number; known are {', '.join(known)}")
-            continue
-        try:
-            answer = decoded(read_bytes(file, _LARGEST), Answer, str(file))
-        except InputError as error:
-            wrong.append(str(error))
-            continue
-        answers[number] = answer
-        wrong += [f"{file}: {line}" for line in (*_ladder_faults(answer), *_unknown(answer, known[number].targets))]
-    if not files:
-        wrong.append(f"{folder}: no answers; must have PS-01.json and so on")
-    return meta, answers, wrong
-
-
-def _unknown(answer: Answer, targets: Mapping[str, Target]) -> Iterator[str]:
-    found = {"values": answer.values} | {
-        f"ladder[{place}].values": rung.values for place, rung in enumerate(answer.ladder)
-    }
-    for name, values in found.items():
-        for key in values:
-            if key not in targets:
-                yield f"{name}.{key}: no target has this key; known are {', '.join(targets)}"
+    remarks: tuple[str, ...] = ()
 
 
 def check_apart(submissions: Sequence[Submission]) -> None:
@@ -212,20 +144,6 @@ def _seen(text: str) -> str:
     those that look like them."""
     plain = unicodedata.normalize("NFKC", text).translate(_LIKE_LATIN)
     return " ".join("".join(each for each in plain if unicodedata.category(each) != "Cf").split())
-
-
-def _ladder_faults(answer: Answer) -> Iterator[str]:
-    """Lines if the ladder has one or two meshes, does not go from coarse to fine, or ends elsewhere than the answer."""
-    sizes = [rung.h for rung in answer.ladder]
-    if not sizes:
-        return
-    if len(sizes) < _FEWEST:
-        yield f"ladder: must have {_FEWEST} meshes or more, not {len(sizes)}"
-    for place, (before, after) in enumerate(itertools.pairwise(sizes), start=1):
-        if not after < before:
-            yield f"ladder[{place}].h = {after}: must be less than {before}, that of the mesh before"
-    if answer.ladder[-1].values != answer.values:
-        yield "values: must be those of the last mesh of the ladder"
 
 
 def add_answer(
@@ -260,20 +178,21 @@ def add_answer(
     path, text = Path(folder), json_text(answer)
     with locked(path):
         file, there = path / f"{number}.json", os.path.lexists(path / META)
-        known = _read_meta(path).code if there else code
+        known = read_meta(path).code if there else code
         if os.path.lexists(path / REQUEST):
             raise InputError(f"--out {path}: holds what a command of partialslip has written: must be another folder")
         if named and known != code:
             raise InputError(
                 f"--code {code!r}: {path} holds answers of {known!r}: must be the same code, or another folder"
             )
-        if not force and os.path.lexists(file) and read_bytes(file, _LARGEST) != text.encode():
+        if not force and os.path.lexists(file) and read_bytes(file, LARGEST) != text.encode():
             raise InputError(f"{file}: is another answer: name another folder, or replace the answer with --force")
         return write_texts(path, ({} if there else {META: _meta_text(Meta(code, ""))}) | {file.name: text})
 
 
 def write_submission(submission: Submission, folder: str | os.PathLike[str]) -> list[Path]:
-    """Write ``submission`` into ``folder``, as :func:`read_submission` reads it. Returns the paths."""
+    """Write ``submission`` into ``folder``, as :func:`partialslip.benchmark.read_submission` reads it. Returns the
+    paths."""
     answers = {f"{key}.json": json_text(each) for key, each in submission.answers.items()}
     return write_texts(Path(folder), {META: _meta_text(submission.meta)} | answers)
 
@@ -284,5 +203,6 @@ def _meta_text(meta: Meta) -> str:
     return tomli_w.dumps({key: value for key, value in given.items() if value or key in ("code", "version")})
 
 
-def _read_meta(folder: Path) -> Meta:
-    return converted(parse_toml(read_text(folder / META, _LARGEST), str(folder / META)), Meta, str(folder / META))
+def read_meta(folder: Path) -> Meta:
+    """Read ``meta.toml`` in ``folder``. Raises InputError if it cannot be read, or has fields that are not allowed."""
+    return converted(parse_toml(read_text(folder / META, LARGEST), str(folder / META)), Meta, str(folder / META))

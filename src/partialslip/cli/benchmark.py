@@ -74,8 +74,8 @@ def add(commands: Commands) -> None:
     reads.set_defaults(command=_read)
 
     scores = parts.add_parser("score", help="grade the answers of a code",
-                              description="Grade the answers of a code: a folder with meta.toml and PS-01.json and "
-                              "so on.",
+                              description="Grade the answers of a code: a folder with meta.toml, PS-01.json and so "
+                              "on. Values that are left out are read from PS-01.csv, a table of tractions.",
                               unjudged=_LACKING,
                               examples=["partialslip benchmark score my-answers",
                                         "partialslip benchmark score my-answers --problems PS-0*"])  # fmt: skip
@@ -136,9 +136,9 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _read(options: argparse.Namespace) -> int:
-    from partialslip.benchmark.measured import answer_from
     from partialslip.benchmark.problem import numbered
     from partialslip.benchmark.submission import add_answer
+    from partialslip.benchmark.tables import answer_from
     from partialslip.cli.consoles import output
 
     problem, named = numbered(options.problem), options.code is not None
@@ -167,12 +167,13 @@ def _check(options: argparse.Namespace) -> int:
     if submission is None:
         raise InputError(f"{options.folder}: not accepted: {len(wrong)} thing{'s' * (len(wrong) > 1)} to correct")
     code = _graded(submission, known)
-    output().print(f"accepted: {options.folder} can be handed in", markup=False, soft_wrap=True)
+    more = ", but problems that are not judged do not count (exit code 4)" if code else ""
+    output().print(f"accepted: {options.folder} can be handed in{more}", markup=False, soft_wrap=True)
     return code
 
 
 def _graded(submission: "Submission", some: "Mapping[str, Problem]") -> int:
-    """Print grades and ladders of a submission. Returns the exit code of :func:`_print_grades`."""
+    """Print grades, ladders and remarks on tables of a submission. Returns the exit code of :func:`_print_grades`."""
     from partialslip.benchmark import CLIMB_HEADS, climb_rows
     from partialslip.cli.consoles import output
     from partialslip.output.tables import print_table
@@ -190,6 +191,8 @@ def _graded(submission: "Submission", some: "Mapping[str, Problem]") -> int:
             "ladders: error of the finest mesh, order, and what follows, in the scales of the targets", soft_wrap=True
         )
         print_table(output(), ("", *CLIMB_HEADS), rows, words=(0, 1))
+    for line in submission.remarks:
+        output().print(line, markup=False, soft_wrap=True)
     return code
 
 
@@ -207,7 +210,7 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> in
     titled, short = console.width >= _TITLED, {NOT_OFFERED: "-", NOT_GRADED: "?"}
     for number, found in grades(some, submission).items():
         worst, answer = found.overall, submission.answers[number]
-        error = "" if worst.error is None else f"{worst.error:.1e}"
+        error = "" if worst.error is None else f"{worst.error:.2e}"
         groups = [found.groups[group].grade if group in found.groups else "" for group in GROUPS]
         spent = "" if answer.cpu_s is None else f"{answer.cpu_s:.2g}"
         if not found.counts:

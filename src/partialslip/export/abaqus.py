@@ -25,7 +25,12 @@ def abaqus_deck(scene: Scene, model: Model) -> list[str]:
     Elements CPE4; small sliding, surface to surface; hard contact enforced directly; friction by Lagrange multipliers.
     At the end of each step contact stresses and nodal contact forces go to the .dat and the .odb file.
     """
-    lines = ["*HEADING", scene.name, _UNTESTED, *deck_heading(scene, model, f"Abaqus deck in {scene.units.words}")]
+    lines = [
+        "*HEADING",
+        f"{scene.name}, untested",
+        _UNTESTED,
+        *deck_heading(scene, model, f"Abaqus deck in {scene.units.words}"),
+    ]
     model = model.in_units(scene.units)
     blocks, (lower, upper) = bodies(model, "CPE4", "\n1.,")
     lines += [*blocks, "*SURFACE INTERACTION, NAME=INTERFACE", "1."]

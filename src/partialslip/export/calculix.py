@@ -38,13 +38,15 @@ def deck_units(scene: Scene, model: Model) -> Units:
     return next((units for units in smaller if units.from_si(model.a, "m") >= _LEAST), smaller[-1])
 
 
-def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> list[str]:
+def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar", reading: str | None = None) -> list[str]:
     """Lines of the deck of ``model``, made from ``scene``: a slice as thick as the elements along the contact line.
 
     ``contact`` is "mortar", or "penalty" for surface-to-surface penalties. The last increment of each step is written:
     contact stresses CONTACT at the lower body's nodes and displacements to the .frd file, forces RF on the nodes of
-    both contact lines to the .dat file.
+    both contact lines to the .dat file. ``reading`` is the command that reads these results; by default
+    ``partialslip score`` with the name of the scene.
     """
+    reading = reading or f"partialslip score {scene.name} JOB.frd"
     units = deck_units(scene, model)
     lines = deck_heading(scene, model, "CalculiX deck")
     model = model.in_units(units)
@@ -52,8 +54,9 @@ def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar") -> li
     small = "" if units == scene.units else ", as CalculiX's mortar contact needs a of 100 units or more"
     lines += [
         f"** the deck is in {units.words}{small}",
-        f"** a slice of thickness {thickness:.12e} {units.label('m')}; the results are scored by",
-        f"** partialslip score {scene.name} JOB.frd: the names of the materials tell the units",
+        f"** a slice of thickness {thickness:.12e} {units.label('m')}: forces and energies per unit depth are its own "
+        "over the thickness",
+        f"** the results are read by {reading}: the names of the materials tell the units",
     ]
     blocks, starts = bodies(model, "C3D8", "", thickness, f"_{units.identifier}")
     frame = frame_of(model, starts[1], 2)

@@ -26,13 +26,14 @@ def deck_heading(scene: Scene, model: Model, what: str) -> list[str]:
 
     lines = [
         f"** {scene.name}: {what}, written by partialslip export",
-        f"** expected a = {shown(a, 'm')}; f = {model.f:g}, P = {shown(scene.P, 'N/m', 10)}{where}",
+        f"** expected a = {shown(a, 'm', 2)}; f = {model.f:g}, P = {shown(scene.P, 'N/m', 10)}{where}",
         f"** elements of {model.size / a:g} a along the contact{_wide(scene, model)}",
     ]
     if model.stiffer != 1:
         lines += [
             f"** bodies {model.stiffer:g} times stiffer and the gap {model.stiffer:g} times flatter than the scene's:",
-            "** the same tractions, without the geometric effects of sloping surfaces",
+            "** the same tractions, without the geometric effects of sloping surfaces; slip and dissipated energy",
+            f"** are {model.stiffer:g} times smaller than the scene's",
         ]
     lines += ["** q acts along x from the lower on the upper body: positive Q and sigma add up at x = a"]
     return lines + [f"** step {number}: {step.name}: {loads(step)}" for number, step in enumerate(model.steps, start=1)]

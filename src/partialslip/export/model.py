@@ -54,6 +54,8 @@ class Model:
         Stiffness of the bodies, in the scene's.
     turns : bool
         Whether the upper body turns, as the pressure has a moment.
+    overlap : float
+        How far the bodies overlap at the start, where nothing is stiffer, m.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Model:
     width: float
     stiffer: float
     turns: bool
+    overlap: float
 
     @property
     def presses_anew(self) -> bool:
@@ -90,7 +93,8 @@ class Model:
             for step in self.steps
         )
         parts = converted(lower), converted(upper)
-        return replace(self, parts=parts, steps=tuple(steps), a=of(self.a, "m"), size=of(self.size, "m"))
+        lengths = {name: of(getattr(self, name), "m") for name in ("a", "size", "overlap")}
+        return replace(self, parts=parts, steps=tuple(steps), **lengths)
 
 
 @dataclass(frozen=True)
@@ -167,9 +171,8 @@ def modelled(
     overlap = _OVERLAP * float(scene.gap_at(np.array(touching)))
     upper = replace(upper, mesh=_upper(upper.mesh, scene, reach * a, overlap, stiffer))
     turns = any(M for _, M in scene.pressing)
-    return Model(
-        scene.name, (lower, upper), scene.friction.f, steps_of(scene), a, line.along * a, line.width, stiffer, turns
-    )
+    parts, steps = (lower, upper), steps_of(scene)
+    return Model(scene.name, parts, scene.friction.f, steps, a, line.along * a, line.width, stiffer, turns, overlap)
 
 
 def _check(scene: Scene) -> None:

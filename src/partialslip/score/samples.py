@@ -1,6 +1,7 @@
 """Tractions read from a file of results."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -57,6 +58,20 @@ class Samples:
     def moved(self, shift: float) -> "Samples":
         """Return the samples moved along x by ``shift``, m."""
         return replace(self, x=self.x + shift, cells=None if self.cells is None else self.cells + shift)
+
+    def coarser(self, first: int) -> "Samples":
+        """Return every second point from index ``first`` (0 or 1) on; of means over cells those over two cells."""
+        starts = np.arange(first, len(self.x), 2)
+        weights = None if self.cells is None else np.diff(self.cells)
+
+        def of(values: Array | None) -> Array | None:
+            if values is None or weights is None:
+                return values if values is None else values[starts]
+            return np.add.reduceat(values * weights, starts) / np.add.reduceat(weights, starts)
+
+        columns: dict[str, Any] = {name: of(getattr(self, name)) for name in ("x", "p", "dq", "q1", "q2", "p1")}
+        cells = None if self.cells is None else np.append(self.cells[starts], self.cells[-1])
+        return replace(self, **columns, cells=cells)
 
 
 def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float, float], order: int) -> Samples:

@@ -12,9 +12,10 @@ from partialslip.benchmark.codes.kratos import Kratos
 from partialslip.benchmark.codes.opensees import OpenSees
 from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.codes.process import CodeOutcome
+from partialslip.benchmark.folder import read_submission
 from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem, read_problems
-from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, read_submission, write_submission
+from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, write_submission
 from partialslip.errors import InputError, MissingLibraryError, PartialslipError, one_line
 from partialslip.origin import made_now
 from partialslip.scene import Scene
