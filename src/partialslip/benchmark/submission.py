@@ -14,7 +14,7 @@ import tomli_w
 from partialslip.benchmark.problem import Problem, Target
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes, read_text
-from partialslip.output.files import json_text, write_texts
+from partialslip.output.files import files_in, json_text, write_texts
 from partialslip.output.lock import locked
 from partialslip.output.place import NAME as REQUEST
 from partialslip.scene.reading import parse_toml
@@ -160,7 +160,7 @@ def examined(
         meta = _read_meta(path)
     except InputError as error:
         wrong.append(str(error))
-    files = sorted(path.glob("*.json"))
+    files = files_in(path, "*.json")
     for file in files:
         number = file.stem
         if number not in known:
