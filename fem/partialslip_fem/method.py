@@ -112,7 +112,7 @@ def _check_pivot(scene: Scene) -> None:
     """Raise InputError for a body that pivots on a contact that slides: its pressure would depend on the slip."""
     if scene.pin is not None and scene.slides:
         where = "must keep |Q| below f P at each load point on a body with support 'pivot'"
-        raise InputError(f"load.Q = {list(scene.load.Q)}: {where}")
+        raise InputError(f"load.Q = {scene.load.shown('Q')}: {where}")
 
 
 def _check_sizes(scene: Scene) -> None:

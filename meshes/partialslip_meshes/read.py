@@ -23,6 +23,7 @@ _IGNORED = {"vertex": 1, "line": 2, "line3": 3}  # fixed: nodes of cells that ar
 _NODES = {"triangle": 3, "triangle6": 6, "triangle7": 7, "quad": 4, "quad8": 8, "quad9": 9} | _IGNORED
 _LARGEST = 1e30  # limit: coordinate
 _FLAT = 1e-12  # limit: of the square of the longest side: an element with less area counts as empty
+_CRACK = 1e-6  # limit: of the square of its length: a hole with less area counts as a crack
 _OFF = 1e-4  # limit: of the length: largest deviation of the contact line from its shape, and of points from a plane
 _MIDDLE = 0.25  # limit: of a side: largest deviation of its middle node from the middle
 _FEWEST = 4  # limit: edges of a contact line
@@ -41,8 +42,8 @@ def read(
     either direction, and the body may lie on either side of its contact line. Nodes without elements are dropped.
 
     Lines of the boundary are the groups ``contact``, ``back``, ``left``, ``right`` and ``face`` (optional: the rest of
-    the contact line's side), in upper or lower case, of edges or of nodes: physical groups (.msh), sets (.inp), groups
-    (.med), or nonzero cell or point data (any format).
+    the contact line's side, from left to right), in upper or lower case, of edges or of nodes: physical groups (.msh),
+    sets (.inp), groups (.med), or nonzero cell or point data (any format).
 
     Parameters
     ----------
@@ -69,6 +70,7 @@ def read(
     points = _in_plane(found.points, refuse) * unit
     corners = _ccw(points, _triangles(found, points, refuse), refuse)
     boundary = _boundary(corners, len(points), refuse)
+    _check_cracks(points, boundary, refuse)
     lines = {key: edges for key, edges in _lines(found, boundary, refuse) if len(edges)}
     for key in ("contact", *needed):
         if key not in lines:
@@ -79,6 +81,8 @@ def read(
     bound = np.concatenate([lines[key] for key in needed])
     lines["contact"] = lines["contact"][~np.isin(lines["contact"], bound).any(axis=1)]
     below = _below(points, lines["contact"], refuse)
+    if "face" in lines and not _way(points, np.concatenate([lines["contact"], lines["face"]])):
+        refuse("group 'face' must go on from both ends of group 'contact', from left to right, or be left out")
     if not below:
         points, corners = points * [1, -1], corners[:, ::-1]
     _lay(points, lines["contact"], face, refuse)
@@ -198,6 +202,27 @@ def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
     return edges[~shared]
 
 
+def _check_cracks(points: Array, boundary: Indices, refuse: Refuse) -> None:
+    """Refuse a mesh whose elements are not joined: nodes of the boundary at one place, or a hole without an area, as
+    around a node in the middle of another element's side."""
+    from scipy.sparse import coo_array  # takes long to import
+    from scipy.sparse.csgraph import connected_components
+
+    nodes, ends = np.unique(boundary, return_inverse=True)
+    ends = ends.reshape(-1, 2)
+    if twice := len(nodes) - len(np.unique(points[nodes], axis=0)):
+        refuse(f"must have no two nodes at one place; nodes of the boundary at the place of others: {twice}")
+    graph = coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(nodes), len(nodes)))
+    loop = connected_components(graph, directed=False)[1][ends[:, 0]]
+    start, end = points[boundary[:, 0]], points[boundary[:, 1]]
+    middle = np.column_stack([np.bincount(loop, each) / np.bincount(loop) for each in start.T])[loop]
+    start, end = start - middle, end - middle
+    area = np.abs(np.bincount(loop, _cross(start, end) / 2))
+    around = np.bincount(loop, np.linalg.norm(end - start, axis=1))
+    if cracks := int((area <= _CRACK * around**2).sum()):
+        refuse(f"must have elements that share whole sides; cracks between elements: {cracks}")
+
+
 def _lines(found: "meshio.Mesh", boundary: Indices, refuse: Refuse) -> Iterator[tuple[str, Indices]]:
     """Name and boundary edges of each group."""
     known = np.sort(boundary, axis=1)
@@ -247,13 +272,20 @@ def _below(points: Array, contact: Indices, refuse: Refuse) -> bool:
     """Whether the body lies below its contact line."""
     if len(contact) < _FEWEST:
         refuse(f"group 'contact' must have at least {_FEWEST} edges, not {len(contact)}")
-    ways = np.sign(np.diff(points[contact, 0], axis=1))
-    nodes = np.unique(contact)
+    way = _way(points, contact)
+    if not way:
+        refuse("group 'contact' must be one line from left to right, with the body on one side of it")
+    return way < 0
+
+
+def _way(points: Array, edges: Indices) -> int:
+    """Direction along x of ``edges``, 1 or -1; 0 if they are not one line that goes from left to right."""
+    ways = np.sign(np.diff(points[edges, 0], axis=1))
+    nodes = np.unique(edges)
     chain = nodes[np.argsort(points[nodes, 0])]
     pairs = np.sort(np.column_stack([chain[:-1], chain[1:]]), axis=1)
-    if (ways != ways[0]).any() or not _among(pairs, np.sort(contact, axis=1)).all() or len(pairs) != len(contact):
-        refuse("group 'contact' must be one line from left to right, with the body on one side of it")
-    return bool(ways[0] < 0)
+    joined = len(pairs) == len(edges) and _among(pairs, np.sort(edges, axis=1)).all()
+    return int(ways[0, 0]) if joined and (ways == ways[0]).all() else 0
 
 
 def _lay(points: Array, contact: Indices, face: Callable[[Array], Array] | None, refuse: Refuse) -> None:

@@ -262,7 +262,9 @@ def run(
             shown = ", ".join(chosen)
             raise InputError(f"methods = {shown}: must have fem among them, which finds Q from load.displacement")
         chosen = tuple(sorted(chosen, key=lambda name: name != "fem"))
-    tasks = {name: (name, reduced(scene), effects) for name in chosen}
+    # cheap methods come first unless they need Q of fem: what they refuse is refused at once
+    order = chosen if scene.load.displacement is not None else sorted(chosen, key=[*METHODS].index)
+    tasks = {name: (name, reduced(scene), effects) for name in order}
     if effects.missing:
         whole = replace(scene, effects=Effects())
         tasks[ALL_EFFECTS] = reference(whole).method, whole, plan(whole, subsurface=subsurface, start=start is not None)
@@ -274,6 +276,7 @@ def run(
             what = _forced(what, results["fem"])
         solve = METHODS[method].solver(keep=keep, allowance=allowance, rig_of=rig_of)
         results[name] = _slid(what, solve(what, its, _told_by(name, progress), start))
+    results = {name: results[name] for name in (*chosen, *results)}
     if "fem" in results and (plates := results["fem"].plates):
         scene = plates.told(scene)
     for result in results.values():

@@ -108,6 +108,10 @@ def linked_table(folder):
     (folder / "PS-02.csv").symlink_to("../other.csv")
 
 
+def linked_in_a_circle(folder):
+    (folder / "loop.inp").symlink_to("loop.inp")
+
+
 def piped(folder):
     os.mkfifo(folder / "pipe.inp")
 
@@ -133,6 +137,7 @@ SPOILED = {
     "answer as input": (more_inputs("PS-02.json"), r"inputs.'PS-02.json': must be the path"),
     "input linked from outside": (linked_out, r"inputs.'decks/job.inp': must be the path of an input file"),
     "table linked from outside": (linked_table, r"PS-02.csv: must be a file of the folder, not a link to a file"),
+    "link to itself": (linked_in_a_circle, r"loop.inp: must be a file of the folder, not a link .* to itself"),
     "absolute path": (more_inputs("/etc/hostname"), r"inputs.'/etc/hostname': must be the path of an input file"),
     "input empty": (lambda folder: (written("e.inp", "")(folder), more_inputs("e.inp")(folder)),
                     r"inputs.'e.inp': must not be an empty file"),

@@ -236,6 +236,16 @@ def test_what_was_finished_before_an_interruption_is_kept(tmp_path, monkeypatch)
     assert list(found.answers) == ["PS-01", "PS-02"]
 
 
+def test_a_temporary_file_of_a_killed_command_is_no_answer(tmp_path):
+    """kill -9 while an answer is written: what was finished is read and kept, and the next run removes the file."""
+    two = {number: each for number, each in read_problems().items() if number in ("PS-01", "PS-02")}
+    found = code_answers("exact", {"PS-01": two["PS-01"]}, folder=tmp_path)
+    (left := tmp_path / ".PS-02-abcd1234.partial.json").write_text("{", "utf-8")
+    assert read_submission(tmp_path, read_problems()) == found
+    assert code_answers("exact", two, folder=tmp_path).answers["PS-01"] == found.answers["PS-01"]
+    assert not left.exists()
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

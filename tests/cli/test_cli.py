@@ -184,6 +184,18 @@ def page_of(done):
     return Outline((done.folder / "report.html").read_text("utf-8"))
 
 
+def test_what_a_cheap_method_refuses_costs_no_finite_elements(monkeypatch):
+    """The results are in the order in which the methods were asked for."""
+    scene = load_scene("hertz-shear", ["fem.accuracy=0.1"])
+    assert [*partialslip.run(scene, ["fem", "march", "exact"]).results] == ["fem", "march", "exact"]
+    solved = mock.Mock()
+    monkeypatch.setattr("partialslip_fem.method.solve", solved)
+    apart = scene.replace(load={"Q": [0.0, 1e4, 0.0, -1e4], "sigma": [1e7, 0.0, -1e7, 0.0]})
+    with pytest.raises(partialslip.InputError, match="must be in phase for the exact method"):
+        partialslip.run(apart, ["fem", "exact"])
+    solved.assert_not_called()
+
+
 @pytest.mark.parametrize("kind", ["exact", "both", "missed"])
 def test_page_stands_alone(request, kind):
     page = page_of(request.getfixturevalue(kind))

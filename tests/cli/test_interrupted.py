@@ -15,6 +15,7 @@ from partialslip.cli import main
 from partialslip.output import files, place
 from partialslip.output.files import write_files
 from partialslip.output.lock import NAME  # this file may stay; the lock does not
+from partialslip.verify.document import read_study
 
 RUN = (
     "run",
@@ -246,3 +247,11 @@ def test_only_what_nobody_writes_is_tidied_up(tmp_path):
         for process in busy:
             process.kill()
             process.communicate()
+
+
+def test_a_temporary_figure_of_a_killed_study_is_not_included(tmp_path):
+    (tmp_path / "size.svg").write_text("<svg/>", "utf-8")
+    (tmp_path / ".size-abcd1234.partial.svg").write_text("<sv", "utf-8")
+    (tmp_path / ".cases-abcd1234.partial.csv").write_text("width", "utf-8")
+    study = read_study(tmp_path)
+    assert ([*study.figures], [*study.tables]) == (["size.svg"], [])

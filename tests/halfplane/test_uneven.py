@@ -187,6 +187,8 @@ def test_marching_agrees(sigma):
     ({**PROFILES["table"], "tilt": "fixed"}, {"M": 1.0}, "load.M = 1.0: must not be given with profile.tilt = 'fixed'"),
     ("hertz", {"M": 1.0, "e": 1e-5}, "load.e = 1e-05: must not be given together with load.M"),
     ("hertz", {"e": 1e3}, "load.e = 1000.0: must keep the line of action of P within"),
+    ("hertz", {"e": [0.0, 1e3]}, "load.e = [0.0, 1000.0]: must keep the line of action of P within"),
+    ("hertz", {"M": [0.0, 1.0], "e": [0.0, 1e-5]}, "load.e = [0.0, 1e-05]: must not be given together with load.M"),
     ("hertz", {"M": -1e100}, "load.M = -1e+100: must keep the line of action of P within"),
     ({**PROFILES["table"], "gap": 0 * SIDES + 3.0}, {}, "profile.gap: must increase at the last x, right of"),
     ({**PROFILES["table"], "gap": SIDES[::-1] * 0 + np.linspace(0, 1, 91)}, {}, "profile.gap: must fall at the first"),

@@ -214,8 +214,35 @@ def spoilt(mesh):
     yield "'contact' must be one line from left", {"way": without({"contact": np.delete(contact, 4)}, "contact")}
     yield "'contact' must have at least 4 edges, not 1", {"way": without({"contact": contact[[0, 2, -1]]}, "contact")}
 
+    right = mesh.lines["right"]
+    corner = without({"face": np.unique(np.vstack([mesh.lines["face"], right]))}, "right")
+    yield "'face' must go on from both ends of group 'contact'", {"way": corner}
+    a, b, c = triangles[inside(mesh)]
+    halves = np.vstack([np.delete(triangles, inside(mesh), axis=0), [[a, len(points), c], [len(points), b, c]]])
+    hanging = {"points": np.vstack([points, points[[a, b]].mean(axis=0)]), "triangles": halves}
+    yield "must have elements that share whole sides; cracks between elements: 1", hanging
+    unmerged = {"points": np.vstack([points, points[[inner]]]), "triangles": split(triangles, inner, len(points))}
+    yield "must have no two nodes at one place; .* of others: 1", unmerged
 
-COUNT = 12
+
+def inside(mesh):
+    """Number of a triangle that has no node on the boundary."""
+    nodes = np.unique(np.concatenate([*mesh.lines.values()]))
+    return int(np.flatnonzero(~np.isin(mesh.triangles, nodes).any(axis=1))[0])
+
+
+def split(triangles, node, twin):
+    """Triangles of which two neighbours at ``node`` have the ``twin`` in place of it."""
+    changed, around = triangles.copy(), np.flatnonzero((triangles == node).any(axis=1))
+    first = around[0]
+    ends = np.setdiff1d(triangles[first], [node])
+    second = next(each for each in around[1:] if np.isin(ends, triangles[each]).any())
+    for number in (first, second):
+        changed[number][triangles[number] == node] = twin
+    return changed
+
+
+COUNT = 15
 
 
 @pytest.mark.parametrize("case", range(COUNT))

@@ -243,6 +243,9 @@ def test_bad_keys_are_named(tmp_path, change, message):
 @pytest.mark.parametrize(("lines", "message"), [
     (("1,2,3",), "pad.csv: line 1: must have two numbers, x and gap"),
     (("1,2", "x"), "pad.csv: line 2: must have two numbers"),
+    (("1,2", "1e200,2"), "pad.csv: line 2: 1e200: must be zero or of a size from 1e-100 to 1e+100"),
+    (("1,2", "2,1e400"), "pad.csv: line 2: 1e400: must be zero or of a size"),
+    (("1,1e-98", "2,1"), "pad.csv: line 1: 1e-98: must be zero or of a size"),
 ])  # fmt: skip
 def test_bad_files_are_named(tmp_path, lines, message):
     assert message in line_of(scene_of, tmp_path, *points(2e-7), lines=lines)

@@ -17,6 +17,7 @@ from partialslip.cli import run as command
 from partialslip.cli.cost import _progress
 from partialslip.study.cost import ladder as cost
 from partialslip.study.cost import prices
+from partialslip.study.cost.figure import phases_svg
 
 SCENE = partialslip.load_scene("hertz-large-tension")
 
@@ -139,6 +140,10 @@ def test_the_front_is_what_nothing_beats():
 def test_exponents_of_power_laws_are_found():
     points = [point("P4", 1e-6 * n**1.5, 7.0 * n**-2.0, n) for n in (100, 1000, 10_000)]
     assert cost.slopes(points)["P4"] == pytest.approx({"m, n": -2, "q": -2, "CPU": 1.5})
+
+
+def test_phases_of_the_exact_method_alone_are_drawn_without_a_warning():
+    assert "<svg" in phases_svg([point("exact", 1.0, 0.0)], "none")
 
 
 def test_a_peer_is_met_at_its_best_error_and_in_its_time():

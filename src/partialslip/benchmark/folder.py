@@ -11,6 +11,7 @@ from partialslip.benchmark.submission import LARGEST, META, Answer, Meta, Submis
 from partialslip.benchmark.tables import Table, completed, read_table, remark
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes
+from partialslip.output.files import files_in
 from partialslip.strictjson import decoded
 
 _FEWEST = 3  # limit: meshes of a ladder
@@ -64,7 +65,7 @@ def examined(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> Fo
         meta = read_meta(path)
     except InputError as error:
         wrong.append(str(error))
-    files = sorted(path.glob("*.json"))
+    files = files_in(path, "*.json")
     for file in files:
         number = file.stem
         if number not in known:

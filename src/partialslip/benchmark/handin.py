@@ -10,6 +10,7 @@ from partialslip.benchmark.submission import META, Answer, Meta, Submission
 from partialslip.benchmark.tables import Table, differences
 from partialslip.errors import InputError
 from partialslip.inputfile import checksum
+from partialslip.output.files import files_in
 
 _DUE = {"author": "who ran the code", "version": "the version of the code", "settings": "elements and contact in words",
         "machine": "processor and system"}  # fmt: skip
@@ -55,7 +56,7 @@ def _meta_faults(folder: Path, meta: Meta) -> Iterator[str]:
 
 def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
     """Lines for input files that are not as ``meta`` says, and for files that it does not list."""
-    own = {META} | {f"{file.stem}{suffix}" for file in folder.glob("*.json") for suffix in (".json", ".csv")}
+    own = {META} | {f"{file.stem}{suffix}" for file in files_in(folder, "*.json") for suffix in (".json", ".csv")}
     for name, given in meta.inputs.items():
         told, file = f"{folder / META}: inputs.{name!r}", folder / name
         plain = str(PurePosixPath(name)) == name and ".." not in PurePosixPath(name).parts
@@ -77,7 +78,7 @@ def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
         if file.is_dir() or hidden or name in meta.inputs:
             continue
         if not _inside(file, folder):
-            yield f"{file}: must be a file of the folder, not a link to a file elsewhere"
+            yield f"{file}: must be a file of the folder, not a link to a file elsewhere or to itself"
             continue
         if name in own:
             continue
@@ -90,8 +91,11 @@ def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
 
 
 def _inside(file: Path, folder: Path) -> bool:
-    """Whether ``file`` lies in ``folder``, and is no link to elsewhere."""
-    return file.resolve().is_relative_to(folder.resolve())
+    """Whether ``file`` lies in ``folder``, and is no link to elsewhere or to itself."""
+    try:
+        return file.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):  # links that go round in circles
+        return False
 
 
 def _answer_faults(folder: Path, problem: Problem, answer: Answer, table: Table | None) -> Iterator[str]:

@@ -182,7 +182,7 @@ def _check(scene: Scene) -> None:
     scene.require_uniform_friction("to export")
     scene.load.require_forces()
     if any(scene.load.sigma_slope):
-        raise InputError(f"load.sigma_slope = {list(scene.load.sigma_slope)}: must be 0 or left out to export")
+        raise InputError(f"load.sigma_slope = {scene.load.shown('sigma_slope')}: must be 0 or left out to export")
     scene.bodies.require_no_pin("to export")
     if scene.bodies.lower and (share := scene.bodies.lower.right_grip):
         raise InputError(f"bodies.lower.right_grip = {share!r}: must be 0 or left out to export")

@@ -138,7 +138,7 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
     require_friction(scene)
     scene.require_even("for a map", "partialslip.halfplane.one_step_zone takes others, many loads at once")
     if scene.presses_anew:
-        raise InputError(f"load.P = {scene.load.P}: must be one number for a map over dQ and dsigma")
+        raise InputError(f"load.P = {scene.load.shown('P')}: must be one number for a map over dQ and dsigma")
     pressed = contact(scene)
     point, missing = _point(scene, pressed)
     top = max(_TOP, math.ceil(1.2 * point.place[1])) if point else _TOP

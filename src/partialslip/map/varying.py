@@ -110,7 +110,7 @@ def varying_map(scene: Scene, progress: Callable[[str], None] = lambda _: None) 
     if not load.in_phase:
         raise InputError(f"load.Q, load.sigma, load.P: must be in phase {_PURPOSE}")
     if load.dQ == 0:
-        raise InputError(f"load.Q = {list(load.Q)}: must vary {_PURPOSE}")
+        raise InputError(f"load.Q = {load.shown('Q')}: must vary {_PURPOSE}")
     pressed = contact(scene)
     count = _COUNT_KINKED if pressed.shape.kinks else _COUNT
     shares = np.linspace(0, 1, count, endpoint=False)  # of dQ = f (P1 + P2), and of dP = P

@@ -121,6 +121,14 @@ def write_new_file(path: Path, write: Callable[[Path], object]) -> bool:
         return True
 
 
+def files_in(folder: Path, pattern: str) -> list[Path]:
+    """Return the paths in ``folder`` that match ``pattern``, sorted, without hidden ones.
+
+    A hidden file may be a temporary one that a killed command has left.
+    """
+    return sorted(path for path in folder.glob(pattern) if not path.name.startswith("."))
+
+
 def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
     """Write UTF-8 ``texts``, by file name, into ``folder`` with :func:`write_files`. Returns the paths."""
 

@@ -49,17 +49,24 @@ class Load(Table, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         if self.M is not None and self.e is not None:
-            raise InputError(f"load.e = {self.e}: must not be given together with load.M")
+            raise InputError(f"load.e = {self.shown('e')}: must not be given together with load.M")
         for key in ("spring", "Q_found"):
             if getattr(self, key) is not None and self.displacement is None:
-                raise InputError(f"load.{key} = {getattr(self, key)}: must be given only with load.displacement")
+                raise InputError(f"load.{key} = {self.shown(key)}: must be given only with load.displacement")
         if self.displacement is not None and any(self.Q):
-            raise InputError(f"load.Q = {list(self.Q)}: must be left out with load.displacement, from which it follows")
+            raise InputError(
+                f"load.Q = {self.shown('Q')}: must be left out with load.displacement, from which it follows"
+            )
         lists = {key: len(getattr(self, key)) for key in _LISTS if self._matters(key)}
         for key, length in list(lists.items())[1:]:
             first, count = next(iter(lists.items()))
             if length != count:
                 raise InputError(f"load.{key}: must have as many numbers as load.{first}, {count}, not {length}")
+
+    def shown(self, key: str) -> str:
+        """Value of ``key`` in a message, as a scene file has it."""
+        value = getattr(self, key)
+        return str(list(value) if isinstance(value, tuple) else value)
 
     def _matters(self, key: str) -> bool:
         """Whether ``key`` is a list whose length counts: two zeros stand for as many as there are load points."""
@@ -93,7 +100,7 @@ class Load(Table, frozen=True, kw_only=True):
     def require_forces(self) -> None:
         """Raise InputError if displacements of plates are given in place of Q."""
         if self.displacement is not None:
-            given = list(self.displacement)
+            given = self.shown("displacement")
             raise InputError(f"load.displacement = {given}: must be load.Q here; only runs with fem find Q")
 
     @property

@@ -13,7 +13,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.inputfile import read_text
-from partialslip.scene.table import Positive, Table
+from partialslip.scene.table import LARGEST, SMALLEST, Positive, Table
 from partialslip.units import LENGTHS
 
 if TYPE_CHECKING:
@@ -157,7 +157,8 @@ def read_points(file: str, unit: tuple[float, float]) -> tuple[Array, Array]:
     Raises
     ------
     InputError
-        If the file is no table of two columns with at least ten different x.
+        If the file is no table of two columns with at least ten different x, or a number is neither zero nor of a size
+        that a scene allows.
     """
     rows: list[tuple[float, float]] = []
     for number, line in enumerate(read_text(file, _LARGEST).splitlines(), start=1):
@@ -166,13 +167,15 @@ def read_points(file: str, unit: tuple[float, float]) -> tuple[Array, Array]:
             continue
         if len(words) != _COLUMNS or not all(map(_NUMBER.fullmatch, words)):
             raise InputError(f"profile.file: {file}: line {number}: must have two numbers, x and gap")
-        place, height = (float(re.sub("[dD]", "e", word)) for word in words)
+        place, height = (float(re.sub("[dD]", "e", word)) * each for word, each in zip(words, unit, strict=True))
+        for word, value in zip(words, (place, height), strict=True):
+            if value and not SMALLEST <= abs(value) <= LARGEST:
+                sizes = f"zero or of a size from {SMALLEST} to {LARGEST}"
+                raise InputError(f"profile.file: {file}: line {number}: {word}: must be {sizes}")
         rows.append((place, height))
-    x, gap = np.array(sorted(rows)).reshape(-1, 2).T * np.array(unit)[:, None]
+    x, gap = np.array(sorted(rows)).reshape(-1, 2).T
     if len(np.unique(x)) < _FEWEST:
         raise InputError(f"profile.file: {file}: must have at least {_FEWEST} different x, not {len(np.unique(x))}")
-    if not (np.isfinite(x).all() and np.isfinite(gap).all()):
-        raise InputError(f"profile.file: {file}: numbers must be finite")
     return x, gap
 
 

@@ -163,10 +163,10 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"load.{given[0]} = {value!r}: must give P and sqrt(A R P) {sizes}")
         self._check_moment()
         if self.load.displacement is not None:
-            self._check_driven(list(self.load.displacement))
+            self._check_driven(self.load.shown("displacement"))
         if self.finite and any(self.load.sigma_slope):
             raise InputError(
-                f"load.sigma_slope = {list(self.load.sigma_slope)}: must be 0 or left out with finite bodies"
+                f"load.sigma_slope = {self.load.shown('sigma_slope')}: must be 0 or left out with finite bodies"
             )
         if self.finite and self.fatigue.sigma_upper is not None:
             raise InputError(
@@ -178,7 +178,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             if body.kind == "pad" and body.width is not None and body.height is not None:
                 self._check_pad(name, body.width, body.height)
 
-    def _check_driven(self, displacement: list[float]) -> None:
+    def _check_driven(self, displacement: str) -> None:
         """Raise InputError if plates cannot drive the bodies."""
         if self.bodies.upper is None or self.bodies.lower is None:
             why = "bodies.upper and bodies.lower; a half-plane has no plate, and its displacement is infinite"
@@ -195,14 +195,14 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         if (pivots := self.bodies.pivots) and not self.profile.turns:
             raise InputError(f"{pivots}.support = 'pivot': must not be given with profile.tilt = 'fixed'")
         if key and not self.profile.turns:
-            raise InputError(f"load.{key} = {getattr(self.load, key)}: must not be given with profile.tilt = 'fixed'")
+            raise InputError(f"load.{key} = {self.load.shown(key)}: must not be given with profile.tilt = 'fixed'")
         still = ""  # bodies that do not turn
         if self.finite:
             still = "" if pivots else "finite bodies, whose plates do not turn; one must have support 'pivot'"
         elif not self.material.alike:
             still = "bodies of different materials, which are not turned"
         if key and still:
-            raise InputError(f"load.{key} = {getattr(self.load, key)}: must not be given with {still}")
+            raise InputError(f"load.{key} = {self.load.shown(key)}: must not be given with {still}")
         if not self.profile.even and self.profile.turns and still:
             raise InputError(f"profile.tilt = 'free': must be 'fixed' with {still}")
         if not self.profile.even and self.bodies.pad:
@@ -211,7 +211,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         lines = [abs((moment or 0.0) / force) for force, moment in self.pressing]
         if key and not max(lines) <= (most := _FARTHEST * self.length):
             near = f"must keep the line of action of P within {most:g} m of x = 0"
-            raise InputError(f"load.{key} = {getattr(self.load, key)}: {near}")
+            raise InputError(f"load.{key} = {self.load.shown(key)}: {near}")
 
     def require_even(self, purpose: str, instead: str = "") -> None:
         """Raise InputError if the pressure of half-planes is not even, or the tension varies along x, which the
@@ -220,7 +220,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"profile.x: must begin at 0 {purpose}; only even gaps{instead and '; '}{instead}")
         for key in ("M", "e", "sigma_slope"):
             if np.any(getattr(self.load, key) or 0.0):
-                raise InputError(f"load.{key} = {getattr(self.load, key)}: must be 0 or left out {purpose}")
+                raise InputError(f"load.{key} = {self.load.shown(key)}: must be 0 or left out {purpose}")
 
     def require_no_moment(self, purpose: str) -> None:
         """Raise InputError if the bodies turn, which the ``purpose`` (in words) does not know: those of an uneven gap,

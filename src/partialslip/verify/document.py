@@ -15,6 +15,7 @@ from partialslip.groups import grouped
 from partialslip.inputfile import read_text
 from partialslip.judge import P_BAR, Q_BAR, Outcome
 from partialslip.origin import origin_lines
+from partialslip.output.files import files_in
 from partialslip.output.page import render_page
 from partialslip.output.svg import svg
 from partialslip.report import rows
@@ -79,12 +80,12 @@ class Account:
 def read_study(folder: Path) -> Study:
     """Read the figures written by ``partialslip study`` into ``folder``. Raises InputError if there are none."""
     try:
-        figures = {path.name: read_text(path, _LARGEST) for path in sorted(folder.glob("*.svg"))}
+        figures = {path.name: read_text(path, _LARGEST) for path in files_in(folder, "*.svg")}
     except InputError:
         raise InputError(f"--include {folder}: figures (.svg) cannot be read as UTF-8 text") from None
     if not figures or any("<svg" not in figure for figure in figures.values()):
         raise InputError(f"--include {folder}: must be the folder of a study, with figures (.svg)")
-    return Study(folder, figures, sorted(path.name for path in folder.glob("*.csv")))
+    return Study(folder, figures, [path.name for path in files_in(folder, "*.csv")])
 
 
 def document(account: Account) -> str:

@@ -18,6 +18,7 @@ from partialslip.benchmark.problem import Problem, read_problems
 from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, write_submission
 from partialslip.errors import InputError, MissingLibraryError, PartialslipError, one_line
 from partialslip.origin import made_now
+from partialslip.output.files import files_in
 from partialslip.scene import Scene
 
 
@@ -131,7 +132,7 @@ def _answer(problem: Problem, solved: CodeOutcome) -> Answer:
 
 def _kept(meta: Meta, problems: Mapping[str, Problem], folder: Path | None) -> dict[str, Answer]:
     """Answers in ``folder`` to the ``problems``, of the code ``meta``."""
-    if not folder or not (folder / META).exists() or not list(folder.glob("*.json")):
+    if not folder or not (folder / META).exists() or not files_in(folder, "*.json"):
         return {}
     kept = read_submission(folder, read_problems())
     return {key: answer for key, answer in kept.answers.items() if key in problems} if kept.meta == meta else {}

@@ -83,7 +83,8 @@ def phases_svg(points: Sequence[CostPoint], title: str) -> str:
                 style = {"ls": _LINES[number % len(_LINES)], "color": _GREYS[number % len(_GREYS)], "mfc": "white"}
                 growth.loglog(*data.T, next(marks), ms=5, lw=1, label=label, **style)
         growth.set(xlabel="unknowns of the last mesh", ylabel="CPU s of the method")
-        growth.legend(frameon=False, fontsize=8, title="series: exponent", title_fontsize=8)
+        if growth.lines:  # none of the exact method alone
+            growth.legend(frameon=False, fontsize=8, title="series: exponent", title_fontsize=8)
         figure.suptitle(title, x=0.01, ha="left", fontsize=10)
 
     return svg(draw, (10.5, 4.4))
