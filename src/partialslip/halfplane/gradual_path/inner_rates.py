@@ -45,7 +45,8 @@ WEIGHTS = 0.5 * SHARES * RESTS
 
 class Map(NamedTuple):
     """How lambda runs in a panel of unit length: ``share`` of s, s of a share and its ``rest``; nodes and weights of
-    integrals up to the collocation points, singular there like a square root; ``whole``: polynomials at the nodes of
+    integrals up to the collocation points, singular there like a square root, and polynomials there, less those at the
+    collocation points; ``whole``: polynomials at the nodes of
     integrals over the panel; ``past``, ``past_weights``: those of integrals that are smooth in s."""
 
     share: Callable[[Array], Array]
@@ -53,6 +54,7 @@ class Map(NamedTuple):
     own: Array
     own_weights: Array
     own_cardinal: Array
+    own_change: Array
     shares: Array
     whole: Array
     past: Array
@@ -71,6 +73,7 @@ def _map(
         own,
         weights * 2 * _NODES[:, None] * y * slope(own),
         cardinal(own),
+        cardinal(own) - np.eye(DEGREES)[:, None],
         share(_NODES),
         cardinal(place(SHARES, RESTS)),
         cardinal(y),

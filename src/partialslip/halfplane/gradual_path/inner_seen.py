@@ -6,18 +6,21 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.arrays import Array, Indices, Mask
-from partialslip.halfplane.gradual_path.inner_rates import PAST, RESTS, SHARES, WEIGHTS, A, B, L, Panel, R, Z
+from partialslip.halfplane.gradual_path.inner_rates import LAST, RESTS, SHARES, WEIGHTS, A, B, L, Panel, R, Z
 
 _APART = 0.15  # accuracy: of the way of an end in a panel: integrals over it are smooth at points so far from its end
 
 
 class Past(NamedTuple):
-    """Panels: where they ``begin`` and end (5, panels), how far ends have ``moved`` in them, and the ``ways``
-    (5, panels, nodes) with ``weights`` (panels, nodes) of integrals that are smooth."""
+    """Panels: lambda at their ``starts`` and ``stops`` (panels,), where the ends ``begin`` and how far they have
+    ``moved`` (5, panels), whether b ``takes`` points (panels,), and the ``ways`` (5, panels, nodes) with ``weights``
+    (panels, nodes) of integrals that are smooth."""
 
-    begins: Array
-    ends: Array
+    starts: Array
+    stops: Array
+    begin: Array
     moved: Array
+    takes: Mask
     ways: Array
     weights: Array
 
@@ -29,6 +32,7 @@ class Seen:
     def __init__(self, tension: float, least: float) -> None:
         self._tension, self._least = tension, least
         self.panels: list[Panel] = []
+        self._kept: Past | None = None
 
     def rates(self, apart: Array) -> Array:
         """Rates of q at points of the right interval of which the ends and z0 are ``apart`` (5, ...); minus those at
@@ -37,27 +41,28 @@ class Seen:
         root_ = np.sqrt(np.abs(apart[L] * apart[A] * apart[B] * apart[R]))
         return self._tension / 4 * apart[Z] * other / np.where(root_ == 0, np.inf, root_)
 
-    def seen(
-        self, begin: Array, end: int, offsets: Array, until: float = np.inf, only: Mask | None = None
-    ) -> tuple[Array, Array]:
-        """Change of q by the rates of the panels so far, or ``only`` of some, or ``until`` a lambda, at points (n,), by
-        their ``offsets`` from an ``end`` of ``begin``, and its derivative by x. Points that b has taken have seen what
-        came after."""
+    def seen(self, begin: Array, end: int, offsets: Array, until: float = np.inf) -> tuple[Array, Array]:
+        """Change of q by the rates of the panels so far, or ``until`` a lambda, at points (n,), by their ``offsets``
+        from an ``end`` of ``begin``, and its derivative by x. Points that b has taken have seen what came after."""
         total, slope = np.zeros_like(offsets), np.zeros_like(offsets)
-        x = begin[end] + offsets
-        entered = np.full(len(x), np.inf)  # number of the panel in which b took the point last
-        right = end in (B, R)
-        if right:
-            for number, panel in enumerate(self.panels):
-                if panel.takes and panel.progress < until:
-                    entered[x < panel.begin[B]] = number
-        for number, panel in enumerate(self.panels):
-            if only is not None and not only[number]:
-                continue
+        if not (self.panels and len(offsets)):
+            return total, slope
+        past, x, right = self._past, begin[end] + offsets, end in (B, R)
+        begun = past.starts < until
+        entered = np.full(len(x), -1)  # number of the panel in which b took the point last
+        if right and past.takes.any():
+            taken = (x[:, None] < past.begin[B]) & past.takes & begun
+            entered = np.where(taken, np.arange(taken.shape[1]), -1).max(axis=1)
+        smooth = (past.stops <= until) & (np.arange(len(begun)) > entered.max())
+        smooth &= self._apart(begin, end, offsets)
+        if smooth.any():
+            ways = ((past.begin[:, smooth] - begin[end])[:, :, None] + past.ways[:, smooth]).reshape(5, 1, -1)
+            weights = past.weights[smooth].ravel()
+            self._add(total, slope, slice(None), ways - offsets[:, None], weights, right)
+        for number in np.flatnonzero(begun & ~smooth):
+            panel = self.panels[number]
             part_of = min((until - panel.progress) / panel.length, 1.0)
-            if part_of <= 0:
-                break
-            whole = np.flatnonzero(~np.isfinite(entered) | (entered < number))
+            whole = np.flatnonzero(entered < number)
             if len(whole):
                 if part_of < 1:
                     way = panel.at(panel.by.place(part_of * SHARES, (1 - part_of) + part_of * RESTS))
@@ -75,43 +80,42 @@ class Seen:
                 self._add(total, slope, part, apart, panel.length * (part_of - first) * WEIGHTS, right)
         return total, slope
 
-    def _ahead(self, begin: Array, end: int, offsets: Array, past: Past) -> tuple[Array, Array]:
-        """What :meth:`seen` returns, at points that an ``end`` has not reached: integrals over panels whose ends stay
-        apart from the points are smooth, unless b was among the points."""
-        least, most = float(offsets.min()), float(offsets.max())
-        among = end == R and any(panel.takes and panel.begin[B] > begin[end] + least for panel in self.panels)
-        if not self.panels or end == B or among:
-            return self.seen(begin, end, offsets)
-        sides = [L, A] if end in (L, A) else [B, R]
-        reached = past.ends[sides] - begin[end]
-        apart = np.maximum(reached - most, least - reached)
-        smooth = (apart > _APART * past.moved[sides]).all(axis=0)
-        total, slope = self.seen(begin, end, offsets, only=~smooth)
-        if smooth.any():
-            ways = ((past.begins[:, smooth] - begin[end])[:, :, None] + past.ways[:, smooth]).reshape(5, 1, -1)
-            weights = past.weights[smooth].ravel()
-            self._add(total, slope, np.arange(len(offsets)), ways - offsets[:, None], weights, end == R)
-        return total, slope
+    def _apart(self, begin: Array, end: int, offsets: Array) -> Mask:
+        """Whether the ends of the interval stay so far from all points in each panel that integrals over it are
+        smooth."""
+        past, sides = self._past, [L, A] if end in (L, A) else [B, R]
+        first = past.begin[sides] - begin[end]
+        last = first + past.moved[sides]
+        apart = np.maximum(np.minimum(first, last) - offsets.max(), offsets.min() - np.maximum(first, last))
+        result: Mask = (apart > _APART * np.abs(past.moved[sides])).all(axis=0)
+        return result
 
+    @property
     def _past(self) -> Past:
         """The panels so far."""
         panels = self.panels
-        return Past(
-            np.array([panel.begin for panel in panels]).reshape(-1, 5).T,
-            np.array([panel.end for panel in panels]).reshape(-1, 5).T,
-            np.array([np.abs(panel.offsets).max(axis=1) for panel in panels]).reshape(-1, 5).T,
-            np.array([panel.offsets @ panel.by.past.T for panel in panels]).reshape(-1, 5, PAST).swapaxes(0, 1),
-            np.array([panel.length * panel.by.past_weights for panel in panels]).reshape(-1, PAST),
-        )
+        if not self._kept or len(self._kept.stops) != len(panels):
+            self._kept = Past(
+                np.array([panel.progress for panel in panels]),
+                np.array([panel.progress + panel.length for panel in panels]),
+                np.array([panel.begin for panel in panels]).T,
+                np.array([panel.offsets @ LAST for panel in panels]).T,
+                np.array([panel.takes for panel in panels]),
+                np.array([panel.offsets @ panel.by.past.T for panel in panels]).swapaxes(0, 1),
+                np.array([panel.length * panel.by.past_weights for panel in panels]),
+            )
+        return self._kept
 
-    def _add(self, total: Array, slope: Array, which: Indices, apart: Array, weights: Array, right: bool) -> None:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            other = (apart[L] + apart[A] + apart[B] + apart[R]) / 2 - self._least - apart[Z]
-            inverse = 1 / apart
-            roots = np.sqrt(np.abs(inverse[L] * inverse[A] * inverse[B] * inverse[R]))
-            rates = (self._tension / 4 * (1 if right else -1)) * weights * apart[Z] * other * roots
-            by_x = (inverse[L] + inverse[A] + inverse[B] + inverse[R]) / 2 - inverse[Z] - 1 / other
-            at_end = ~np.isfinite(roots)
-            rates[at_end] = 0.0
-            total[which] += rates.sum(axis=-1)
-            slope[which] += np.where(rates == 0, 0.0, rates * by_x).sum(axis=-1)
+    def _add(
+        self, total: Array, slope: Array, which: Indices | slice, apart: Array, weights: Array, right: bool
+    ) -> None:
+        left_, low, high, right_, zero = apart
+        outer, inner = left_ * right_, low * high
+        other = (left_ + low + high + right_) / 2 - self._least - zero
+        product = outer * inner
+        inverse = 1 / np.where(product == 0, np.inf, product)
+        each = weights * (self._tension / 4 * (1 if right else -1)) * np.sqrt(np.abs(inverse))
+        rates = zero * other
+        by_x = rates * ((left_ + right_) * inner + (low + high) * outer) * (inverse / 2) - (zero + other)
+        total[which] += (each * rates).sum(axis=-1)
+        slope[which] += (each * by_x).sum(axis=-1)

@@ -355,13 +355,11 @@ class Way(Seen):
 
     def _slopes(self, ends: Array, free: tuple[int, ...]) -> Array:
         """Derivatives (5, free, n) of the ends and z0 by the ``free`` ends; the others are such that b takes points."""
-        steps = 1e-6 * np.diff(ends, axis=0).min(axis=0)
-        found, by = np.zeros((5, len(free), ends.shape[1])), dict[int, Array]()
-        at = root(ends, self._least)
-        for end in ENDS:
-            moved = ends.copy()
-            moved[end] += steps
-            by[end] = (root(moved, self._least) - at) / steps
+        count, steps = ends.shape[1], 1e-6 * np.diff(ends, axis=0).min(axis=0)
+        moved = np.repeat(ends[:, None], 1 + len(ENDS), axis=1)  # first as they are, then each moved in turn
+        moved[ENDS, [1 + end for end in ENDS]] += steps
+        at, *after = root(moved.reshape(len(ENDS), -1), self._least).reshape(-1, count)
+        found, by = np.zeros((5, len(free), count)), [(each - at) / steps for each in after]
         for column, end in enumerate(free):
             found[end, column] = 1.0
             if B in free:
@@ -384,9 +382,11 @@ class Way(Seen):
         converge. The length is unknown if there is an ``event``.
 
         Where b has just turned round, it moves by a quarter of what the place does at which it would take points: both
-        go with the square of the time, and by this quarter what a point has seen adds up to nothing.
+        go with the square of the time, and by this quarter what a point has seen adds up to nothing. At the beginning
+        it moves by half of that: both go with the time, and no point has seen anything before.
         """
         turned = not takes and begin[Z] - begin[B] < _TURNED
+        follows = 1 / 4 if self.panels else 1 / 2
         if like is not None:
             offsets = like
         else:
@@ -395,8 +395,8 @@ class Way(Seen):
                 offsets[A] = speeds[A] * length * (1 - (1 - by.shares) ** _SLOWS) / _SLOWS
             if turned:
                 ends = begin[:4, None] + offsets[:4]
-                offsets[B] = np.abs(taken(ends, self._least) - begin[B]) / 4 + 1e-9 * by.shares * length
-        free, before = (L, A, R) if takes else ENDS, self._past()
+                offsets[B] = follows * np.abs(taken(ends, self._least) - begin[B]) + 1e-9 * by.shares * length
+        free = (L, A, R) if takes else ENDS
         count = len(free)
         step: tuple[float, Array] | None = None  # of the length and of the offsets
         best, since = np.inf, 0
@@ -425,21 +425,15 @@ class Way(Seen):
                 rates = length * by.own_weights * self.rates(apart) * (1 if right else -1)
                 total = rates.sum(axis=1)
                 by_length[row] = total / length
-                past, past_slope = self._ahead(begin, end, offsets[end], before)
-                factors = [0.5 / other - 0.5 / apart[each] for each in ENDS] + [1 / apart[Z] - 1 / other]
+                past, past_slope = self.seen(begin, end, offsets[end])
+                factors = np.array([*(0.5 / other - 0.5 / apart[each] for each in ENDS), 1 / apart[Z] - 1 / other])
+                factors *= rates
                 at_x = -(1 / apart[Z] + 1 / other - sum(0.5 / apart[each] for each in ENDS if each != end))
                 diagonal = past_slope + (rates * at_x).sum(axis=1)
-                for each in range(5):
-                    if each == end:
-                        direct = rates * (0.5 / other)
-                        both = by.own_cardinal - np.eye(DEGREES)[:, None, :]
-                        block = np.einsum("jm,jmk->jk", rates * -0.5 / apart[end], both)
-                        block += np.einsum("jm,jmk->jk", direct, by.own_cardinal)
-                    else:
-                        block = np.einsum("jm,jmk->jk", rates * factors[each], by.own_cardinal)
-                    for column in range(count):
-                        if slopes[each, column].any():
-                            matrix[row, :, column] += block * slopes[each, column]
+                factors[end] = rates * (0.5 / other)
+                blocks = factors.swapaxes(0, 1) @ by.own_cardinal  # (nodes, 5, nodes)
+                blocks[:, end] += ((rates * -0.5 / apart[end])[:, None] @ by.own_change)[:, 0]
+                matrix[row] = np.einsum("jek,eck->jck", blocks, slopes)
                 less = np.zeros(DEGREES)
                 if end != B:
                     x, origin = offsets[end], float(begin[end])
@@ -452,7 +446,7 @@ class Way(Seen):
                 if end == B and turned:
                     due = taken(ends, self._least) - begin[B]
                     near = np.flatnonzero(np.abs(due) < _NEAR_TURN)
-                    residual[row, near] = offsets[B, near] - due[near] / 4
+                    residual[row, near] = offsets[B, near] - follows * due[near]
                     matrix[row, near] = by_length[row, near] = 0.0
                     matrix[row, near, row, near] = 1.0
             size = count * DEGREES
