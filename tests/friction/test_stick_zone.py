@@ -176,19 +176,6 @@ def test_an_end_that_came_back_between_two_nodes_lies_between_them():
     assert zone.left == before.left
 
 
-def test_an_end_beside_a_node_that_slips_in_the_steady_state_only_lies_between_both():
-    """Under mean loads the first node beyond the end came back, too, and its room has not vanished yet."""
-    beyond = (X > 0.525) & (X < 0.55)
-    some = room(-0.31, 0.52)
-    some[beyond] = 0.01 * BOUND[0]
-    stuck = np.where(X > 0.525, 0.5, np.nan)
-    changed = np.where(X < 0.525, np.nan, np.where(beyond, 0.5, 0.9))
-    unsteady = np.where(beyond, 2 * some, 0.0)
-    zone = read_stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed, unsteady, stuck)
-    assert zone.right == pytest.approx(0.525, abs=1e-12)
-    assert zone.strips == pytest.approx((0.0, 0.025), abs=1e-12)
-
-
 @pytest.mark.fault
 def test_a_fit_does_not_reach_across_the_place_where_an_end_turned_round(monkeypatch):
     """Five vertices beside the end are those of the strip over which nodes slipped before; q has a kink at the other

@@ -13,8 +13,7 @@ distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth.
 
 An end that came back into a strip of such nodes is fitted to this strip alone: at its other side q has a kink. Where
 the strip is narrow, the end lies between the last node that sticks and the first one that slips. The strip may be
-narrower than the distance of two nodes: then no node lies in it, but the first one that slips had stuck again before,
-or has no more room than counts as none.
+narrower than the distance of two nodes: then no node lies in it, but the first one that slips had stuck again before.
 """
 
 import itertools
@@ -135,8 +134,7 @@ def read_stick_zone(
             continue
         count = _slipped(changed, inside)
         few = count > 0 and _vertices(x[inside[[0, count - 1]]], vertices) < _VERTICES
-        again = stuck is not None and bool(stuck[beyond] < changed[beyond] or still[beyond])
-        none = again and bool(np.isnan(changed[inside[0]]))
+        none = stuck is not None and bool(np.isnan(changed[inside[0]]) and stuck[beyond] < changed[beyond])
         if few or none:
             ends[side] = float(x[inside[0]] + x[beyond]) / 2
             apart = inside[count] if 0 < count <= _RUN else beyond
