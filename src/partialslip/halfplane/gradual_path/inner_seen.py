@@ -8,7 +8,7 @@ import numpy as np
 from partialslip.arrays import Array, Indices, Mask
 from partialslip.halfplane.gradual_path.inner_rates import LAST, RESTS, SHARES, WEIGHTS, A, B, L, Panel, R, Z
 
-_APART = 0.15  # accuracy: of the way of an end in a panel: integrals over it are smooth at points so far from its end
+_APART = 1.0  # accuracy: of the way of an end in a panel: integrals over it are smooth at points so far from its end
 
 
 class Past(NamedTuple):
