@@ -21,9 +21,9 @@ An error of s that comes and goes within an interval answers with the change of 
 where w is singular, that is too much: an error that grows from one side of the interval to the other answers with the
 mean of w. Where the other end has come back over a part of a jump, the part that is left has a share of the error that
 does not go within the zone: there the mean counts, with the length of the whole jump. To and fro do not cancel in a
-part: l is at least L/2. Errors of jumps are independent of each other: their squares are added. The difference of two
-solutions need not change sign: slip that is off where an end turned round stays off for all points that the end takes
-after that. The larger counts of the root of the sum of squares and the sum with signs.
+part: l is at least L/2. Errors of different places are independent of each other: their squares are added. But slip
+that is off where an end turned round stays off for all points that the end takes after that: an end is known no better
+than the sum, with signs, of what the difference of two solutions moves it by.
 """
 
 import numpy as np
@@ -60,15 +60,15 @@ def locked_in(solution: MeshSolution, other: MeshSolution, strengths: Array) -> 
     answers = []
     for way, strength in zip((-1, 1), strengths.tolist(), strict=True):
         at = way * (places - middle)[::way] / half_width
-        off = differences[::way]
-        apart = (off[1:] + off[:-1]) / 2 - off[-1:]
-        different = np.diff(_weight(at)) * apart
-        squares = _DIFFERENT**2 * max((different**2).sum(), different.sum() ** 2)
+        slip = differences[::way]
+        apart = (slip[1:] + slip[:-1]) / 2 - slip[-1:]
+        different = _DIFFERENT * np.diff(_weight(at)) * apart
         low, high = np.sort(way * (intervals - middle) / half_width, axis=0)
         inside = np.clip([low, high], -1.0, 1.0)
         weights = np.minimum(np.diff(_weight(inside), axis=0)[0], np.diff(_integral(inside), axis=0)[0] / (high - low))
-        squares += ((weights * jumps) ** 2).sum()
-        answers.append(2 * np.sqrt(squares) / (np.pi * np.sqrt(2 * half_width) * max(strength, _TINY)))
+        independent = np.hypot(np.linalg.norm(different), np.linalg.norm(weights * jumps))
+        off = max(float(independent), abs(float(different.sum())))
+        answers.append(2 * off / (np.pi * np.sqrt(2 * half_width) * max(strength, _TINY)))
     left, right = answers
     if stick.moved[0] != stick.moved[1]:
         left = right = right if stick.moved[0] else left
