@@ -5,6 +5,7 @@ import io
 import json
 import zipfile
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -26,6 +27,7 @@ from partialslip.benchmark.tables import answer_from
 from partialslip.cli import main
 from partialslip.errors import InputError
 from partialslip.origin import made_now
+from partialslip.output.files import json_text
 from partialslip.output.lock import locked
 from partialslip.run import run
 
@@ -244,6 +246,18 @@ def test_a_temporary_file_of_a_killed_command_is_no_answer(tmp_path):
     assert read_submission(tmp_path, read_problems()) == found
     assert code_answers("exact", two, folder=tmp_path).answers["PS-01"] == found.answers["PS-01"]
     assert not left.exists()
+
+
+@pytest.mark.usefixtures("tables")
+def test_a_second_run_writes_nothing_of_a_table_into_answers(tmp_path):
+    """A value that an answer leaves out is read from the table beside it when it is graded, and only then."""
+    folder = tmp_path / "answers"
+    told = json_text(msgspec.structs.replace(code_answers("exact", SOME, folder=folder).answers["PS-02"], values={}))
+    (folder / "PS-02.json").write_text(told, "utf-8")
+    (tmp_path / "mine.csv").rename(folder / "PS-02.csv")
+    assert {"a", "m", "n"} <= read_submission(folder, SOME).answers["PS-02"].values.keys()
+    assert code_answers("exact", SOME, folder=folder).answers["PS-02"].values == {}
+    assert (folder / "PS-02.json").read_text("utf-8") == told
 
 
 @pytest.mark.parametrize(

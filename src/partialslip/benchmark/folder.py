@@ -26,15 +26,20 @@ class Folder(NamedTuple):
     tables: dict[str, Table]
     wrong: list[str]
 
-    def submission(self, known: Mapping[str, Problem]) -> Submission:
-        """The answers, completed from the tables. Raises InputError if anything is wrong."""
+    def as_written(self) -> Submission:
+        """The answers as the files give them. Raises InputError if anything is wrong."""
         if self.wrong or self.meta is None:
             raise InputError(self.wrong[0])
-        found, remarks = dict(self.answers), []
+        return Submission(self.meta, self.answers)
+
+    def submission(self, known: Mapping[str, Problem]) -> Submission:
+        """The answers, completed from the tables. Raises InputError if anything is wrong."""
+        written = self.as_written()
+        found, remarks = dict(written.answers), []
         for number, table in self.tables.items():
             found[number] = completed(self.answers[number], table)
             remarks.append(remark(known[number], self.answers[number], table))
-        return Submission(self.meta, found, tuple(remarks))
+        return Submission(written.meta, found, tuple(remarks))
 
 
 def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> Submission:

@@ -12,7 +12,7 @@ from partialslip.benchmark.codes.kratos import Kratos
 from partialslip.benchmark.codes.opensees import OpenSees
 from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.codes.process import CodeOutcome
-from partialslip.benchmark.folder import read_submission
+from partialslip.benchmark.folder import examined
 from partialslip.benchmark.measured import answer_of
 from partialslip.benchmark.problem import Problem, read_problems
 from partialslip.benchmark.submission import META, Answer, Meta, Rung, Submission, write_submission
@@ -131,8 +131,8 @@ def _answer(problem: Problem, solved: CodeOutcome) -> Answer:
 
 
 def _kept(meta: Meta, problems: Mapping[str, Problem], folder: Path | None) -> dict[str, Answer]:
-    """Answers in ``folder`` to the ``problems``, of the code ``meta``."""
+    """Answers in ``folder`` to the ``problems``, of the code ``meta``. Tables beside them are no part of them."""
     if not folder or not (folder / META).exists() or not files_in(folder, "*.json"):
         return {}
-    kept = read_submission(folder, read_problems())
+    kept = examined(folder, read_problems()).as_written()
     return {key: answer for key, answer in kept.answers.items() if key in problems} if kept.meta == meta else {}
