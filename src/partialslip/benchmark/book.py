@@ -1,6 +1,5 @@
 """The book of the benchmark: a page with all problems and the scoreboard, and a zip of plain data."""
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from importlib.resources import files as resources
@@ -20,7 +19,7 @@ from partialslip.output.files import csv_text, json_text, zipped
 from partialslip.output.page import render_page
 from partialslip.report import rows
 from partialslip.report.sketch import sketch_svg
-from partialslip.scene.writing import scene_toml
+from partialslip.scene.writing import scene_toml, set_tables
 
 _IDLE = ("steps", "sigma_slope")  # display: keys of loads: a setting of partialslip, and zero in all problems
 _COLUMNS = 8  # display: codes side by side in a scoreboard
@@ -71,7 +70,7 @@ def book_zip(problems: Mapping[str, Problem]) -> bytes:
 
 
 def _files(problem: Problem, checksum: str) -> dict[str, str]:
-    scene, a = scene_toml(problem.scene, SETTINGS), problem.targets["a"].value
+    a = problem.targets["a"].value
     listed = [
         (key, {"x": float(place) * a} if (place := key.partition("@")[2]) else {}, target)
         for key, target in problem.targets.items()
@@ -84,14 +83,14 @@ def _files(problem: Problem, checksum: str) -> dict[str, str]:
         "statement": problem.statement,
         "sources": msgspec.to_builtins(problem.sources),
         "remark": problem.why,
-        "data": _given(tomllib.loads(scene)),
+        "data": _given(set_tables(problem.scene, SETTINGS)),
         "targets": {key: placed | msgspec.to_builtins(target) for key, placed, target in listed},
     }
     columns = ("value", "unit", "scale", "uncertainty", "group", "known")
     lines = [[key, placed.get("x"), *(getattr(target, name) for name in columns)] for key, placed, target in listed]
     return {
         "problem.json": json_text(everything),
-        "scene.toml": scene,
+        "scene.toml": scene_toml(problem.scene, SETTINGS),
         "targets.csv": csv_text(("key", "x", *columns), lines),
     }
 

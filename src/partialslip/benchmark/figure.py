@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _ACCURACY = 1e-3  # accuracy: of a drawn curve, far below the width of a line
 _PLACED = ("p", "q1", "q2", "dq")
-_SHEAR, _CHANGE = "q/(f p0)", "dq/(2 f p0)"  # display: the shear of other figures, and its name where dq is a target
+_CHANGE = "dq/(2 f p0)"  # display: name of the shear, of which dq is the target
 _GREYS = ("1.0", "0.93", "0.82", "0.66", "0.4")  # display: cells of the grades A to E
 _DARK = 4  # display: grade, counted from A, from which on the text of a cell is white
 _WIDTH = 7.4  # display: inches
@@ -96,11 +96,7 @@ def _asked(problem: Problem) -> Result:
 
 
 def _draw_targets(axes: "Axes", problem: Problem, result: Result) -> None:
-    draw_tractions(axes, {"targets": result}, problem.scene.friction)
-    axes.set_ylabel(axes.get_ylabel().replace(_SHEAR, _CHANGE))
-    legend = axes.get_legend()
-    for text in legend.get_texts() if legend else ():
-        text.set_text(text.get_text().replace(_SHEAR, _CHANGE))
+    draw_tractions(axes, {"targets": result}, problem.scene.friction, _CHANGE)
     for name in ("p", "dq"):  # the scale of dq is 2 f p0: drawn is q = dq/2, in f p0
         some = {place: target for place in problem.places if (target := problem.targets.get(f"{name}@{place:g}"))}
         heights = [target.value / target.scale for target in some.values()]

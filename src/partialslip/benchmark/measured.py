@@ -63,11 +63,16 @@ def quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float
     return {key: each._replace(value=float(each.value), scale=float(each.scale)) for key, each in found}
 
 
+def targeted(problem: Problem, result: Result) -> dict[str, Quantity]:
+    """Quantities of ``result`` that are targets of ``problem``, by key, at the places of the target's a."""
+    found = quantities(problem.scene, result, problem.places, problem.targets["a"].value)
+    return {key: found[key] for key in problem.targets if key in found}
+
+
 def answer_of(problem: Problem, result: Result) -> Answer:
     """Answer to ``problem`` from a ``result``, with what it has of the targets."""
-    values = quantities(problem.scene, result, problem.places, problem.targets["a"].value)
     return Answer(
-        values={key: values[key].value for key in problem.targets if key in values},
+        values={key: each.value for key, each in targeted(problem, result).items()},
         cpu_s=result.cost.cpu_s,
         memory_mb=result.cost.peak_rss_mb,
     )

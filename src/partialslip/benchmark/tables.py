@@ -12,7 +12,7 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from partialslip.benchmark.grade import LIMITS, NOT_GRADED, NOT_OFFERED, graded
-from partialslip.benchmark.measured import Quantity, quantities
+from partialslip.benchmark.measured import Quantity, targeted
 from partialslip.benchmark.problem import Problem
 from partialslip.benchmark.submission import Answer
 from partialslip.errors import InputError
@@ -54,7 +54,7 @@ def read_table(problem: Problem, file: str | os.PathLike[str], columns: Mapping[
     origin = str(file)
     samples = read_tractions(Path(file), problem.scene, (1.0, 1.0, 1.0), 1, None, columns)
     result = _result(problem, samples, origin)
-    found = _quantities(problem, result)
+    found = targeted(problem, result)
     halves = [_half(problem, samples.coarser(first), origin) for first in (0, 1)]
     errors = {}
     for key, each in found.items():
@@ -72,15 +72,10 @@ def _result(problem: Problem, samples: Samples, origin: str) -> Result:
     return scored(problem.scene, samples, "table", origin)
 
 
-def _quantities(problem: Problem, result: Result) -> dict[str, Quantity]:
-    found = quantities(problem.scene, result, problem.places, problem.targets["a"].value)
-    return {key: found[key] for key in problem.targets if key in found}
-
-
 def _half(problem: Problem, samples: Samples, origin: str) -> dict[str, Quantity]:
     """Quantities of every second row; none if these are too few."""
     try:
-        return _quantities(problem, _result(problem, samples, origin))
+        return targeted(problem, _result(problem, samples, origin))
     except InputError:
         return {}
 

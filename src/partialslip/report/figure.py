@@ -79,7 +79,9 @@ def from_reference(run: Run) -> dict[str, Result]:
     return {first: run.results[first]} | run.results
 
 
-def draw_tractions(axes: "Axes", results: Mapping[str, Result], friction: Friction | None = None) -> None:
+def draw_tractions(
+    axes: "Axes", results: Mapping[str, Result], friction: Friction | None = None, shear: str | None = None
+) -> None:
     """Draw p/p0 and q/(f p0), q = (q2 - q1)/2, of all methods: lines for a closed form, markers for a mesh.
 
     Parameters
@@ -89,10 +91,13 @@ def draw_tractions(axes: "Axes", results: Mapping[str, Result], friction: Fricti
         By method. The first result gives the scales and the stick zone.
     friction : Friction, optional
         Friction of the scene; without it q/p0 is drawn, without the friction bound.
+    shear : str, optional
+        Name of the shear in the labels; default: q/(f p0) or q/p0.
     """
     reference = next(iter(results.values()))
     a, p0 = reference.a, reference.p0
-    unit, shear = (p0, "q/p0") if friction is None else (friction.f * p0, "q/(f p0)")
+    unit, usual = (p0, "q/p0") if friction is None else (friction.f * p0, "q/(f p0)")
+    shear = shear or usual
     if reference.m is not None and reference.n is not None:
         axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label="stick zone [-m, n]")
     shears = bool(reference.traction.dq.any())

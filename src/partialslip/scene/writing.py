@@ -22,9 +22,13 @@ def scene_tables(scene: Scene) -> dict[str, Any]:
 
 
 def scene_toml(scene: Scene, without: Collection[str] = ()) -> str:
-    """Text of a scene file for ``scene``, in the units in which it is shown, with all settings that are not None;
-    ``without`` some tables."""
-    return tomli_w.dumps(_set({key: table for key, table in scene_tables(scene).items() if key not in without}))
+    """Text of a scene file for ``scene``, in the units in which it is shown: :func:`set_tables`."""
+    return tomli_w.dumps(set_tables(scene, without))
+
+
+def set_tables(scene: Scene, without: Collection[str] = ()) -> dict[str, Any]:
+    """Return :func:`scene_tables` with all settings that are not None; ``without`` some tables."""
+    return _set({key: table for key, table in scene_tables(scene).items() if key not in without})
 
 
 def _set(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -46,8 +46,8 @@ WEIGHTS = 0.5 * SHARES * RESTS
 class Map(NamedTuple):
     """How lambda runs in a panel of unit length: ``share`` of s, s of a share and its ``rest``; nodes and weights of
     integrals up to the collocation points, singular there like a square root, and polynomials there, less those at the
-    collocation points; ``whole``: polynomials at the nodes of
-    integrals over the panel; ``past``, ``past_weights``: those of integrals that are smooth in s."""
+    collocation points; ``whole``: polynomials at the nodes of integrals over the panel; ``past``, ``past_weights``:
+    those of integrals that are smooth in s."""
 
     share: Callable[[Array], Array]
     place: Callable[[Array, Array], Array]
