@@ -2,6 +2,8 @@
 
 import asyncio
 import io
+import os
+import subprocess
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -17,6 +19,7 @@ from partialslip.threads import one_thread
 from partialslip_fem import Kept
 from partialslip_meshes.files import quiet
 
+TWO = os.environ | {"OPENBLAS_NUM_THREADS": "2"}
 COARSE = ["fem.accuracy=5e-2", "fem.order=2"]
 SETTINGS = [  # of runs: adaptive and not, one body and two, both factors, with and without a closed form
     ["fem.factor=superlu"],
@@ -69,6 +72,35 @@ def test_as_one_after_the_other(alone, threads, times):
             assert all(same(result, alone[number]) for runs in found for number, result in runs)
             assert blas() == before
     assert {number for _, number in before} == {3}
+
+
+LATE = """
+from threadpoolctl import threadpool_info, threadpool_limits
+import numpy
+from partialslip.threads import one_thread
+
+def threads():
+    return {each["num_threads"] for each in threadpool_info() if "scipy" in each["prefix"]}
+
+@one_thread
+def inside():
+    return threads()
+
+@one_thread
+def outside():
+    import scipy.linalg
+    return inside()
+
+threadpool_limits(2, user_api="blas")
+print(outside(), len(threadpool_info()), threads())
+"""
+
+
+def test_a_library_that_is_loaded_within_a_limit_is_limited_too():
+    """SciPy's BLAS, which a function around it, or another thread, had not loaded. Rounding may decide on a mesh."""
+    done = subprocess.run([sys.executable, "-c", LATE], capture_output=True, text=True, check=True, env=TWO)
+    assert done.stdout.split()[0] == "{1}"
+    assert done.stdout.split()[-1] == "{2}"
 
 
 def test_in_a_notebook(alone):

@@ -15,11 +15,12 @@ _T = TypeVar("_T")
 
 
 class _Limit:
-    """Process-wide limit of BLAS threads: the first function that enters sets it, the last that leaves restores it."""
+    """Process-wide limit of BLAS threads: the first function that enters sets it, the last that leaves restores it.
+    Functions that enter meanwhile limit the libraries that were loaded since."""
 
     def __init__(self) -> None:
-        self._lock, self._running = threading.Lock(), 0
-        self._limited: Any = None
+        self._lock, self._running, self._seen = threading.Lock(), 0, 0
+        self._limits: list[Any] = []
         if hasattr(os, "register_at_fork"):  # the lock may be held by a thread that the child does not have
             os.register_at_fork(after_in_child=self._begin_anew)
 
@@ -27,9 +28,10 @@ class _Limit:
     def held(self) -> Iterator[None]:
         """Limit BLAS to one thread."""
         with self._lock:
-            if not self._running:
+            if not self._running or self._seen != len(sys.modules):
+                self._seen = len(sys.modules)
                 _take_over()
-                self._limited = _controller(len(sys.modules)).limit(limits=1, user_api="blas")
+                self._limits.append(_controller(self._seen).limit(limits=1, user_api="blas"))
             self._running += 1
         try:
             yield
@@ -38,7 +40,8 @@ class _Limit:
                 self._running -= 1
                 if not self._running:
                     _take_over()
-                    self._limited.restore_original_limits()
+                    while self._limits:  # the last one knows what the ones before had set
+                        self._limits.pop().restore_original_limits()
                     _take_over()
 
     def _begin_anew(self) -> None:
