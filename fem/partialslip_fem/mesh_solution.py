@@ -127,9 +127,9 @@ class MeshSolution:
     @property
     def turning(self) -> list[float]:
         """Points where an end of the stick zone turned round: kinks of q beside which its ends are known poorly."""
-        if not self.history or not self.history.turns or self.history.never_slips is None:
+        if not self.history or not self.history.turns or self.history.still is None:
             return []
-        return turning_points(self.lower.x[self.nodes], self.history.never_slips, self.history.slips)
+        return turning_points(self.lower.x[self.nodes], self.history.still, self.history.slips)
 
     @property
     def lower(self) -> Body:

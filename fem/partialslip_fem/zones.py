@@ -77,8 +77,8 @@ def shear_kinks(problem: Problem, line: Body, nodes: Indices, history: History) 
     found = finest(problem.start[1].x) if problem.start else []
     for q, bound in reversed(history.visited):
         found += kinks(x, bound, q, vertices, forces)
-    if history.turns and history.never_slips is not None:
-        found += turning_points(x, history.never_slips, history.slips)
+    if history.turns and history.still is not None:
+        found += turning_points(x, history.still, history.slips)
     return tuple(apart(found, _SAME_KINK * (x[-1] - x[0]) / 2))
 
 

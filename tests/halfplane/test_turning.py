@@ -9,9 +9,11 @@ import reversed_loads
 
 import partialslip
 from partialslip import halfplane
+from partialslip.friction.history import History
 from partialslip.halfplane import contact_of
 from partialslip.halfplane.gradual_path import slips
 from partialslip.halfplane.turning import Turning, half_cycle
+from partialslip.judge.means import norm_errors
 
 UNIT = contact_of(lambda x: np.sqrt(1 - x**2), 1.0)
 DRIFT, TO_THE_END, NO_POINT = (0.6434668934976868, 8.670889385947003), (0.75, 6.0), (0.9975, 7.2)
@@ -55,6 +57,31 @@ def test_methods_agree_on_the_points_that_never_slip(method, more):
     assert found.permanent is not None
     assert np.array(found.permanent) / found.a == pytest.approx(cycle(0.55, 7.0).permanent, abs=5e-4)
     assert -found.m < found.permanent[0] - 1e-3 * found.a
+
+
+def turned_under_mean_loads(method):
+    """Error of q over its estimate, and the size of the cell where an end turned round."""
+    usual = partialslip.load_scene("hertz-shear")
+    f, P = usual.friction.f, usual.P
+    Q, sigma = np.array([-0.7765, 0.4502]) * f * P, np.array([1.2855, -4.1894]) * f * 4e8
+    loads = {"load.Q": Q.tolist(), "load.sigma": sigma.tolist(), "fem.accuracy": 1e-3}
+    found, true = partialslip.run(usual.replace(loads), [method, "exact"]).results.values()
+    off = norm_errors(found.traction, true.traction, f, ("q",))["q"]
+    at = np.searchsorted(found.traction.cells, true.permanent[1])
+    return off / found.estimate["q"], found.traction.cells[at] - found.traction.cells[at - 1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["march", "fem"])
+def test_kinks_where_an_end_turned_round_under_mean_loads(method, monkeypatch):
+    """Beside the points that never slip others creep for some cycles, and stick in the steady state as well."""
+    ratio, size = turned_under_mean_loads(method)
+    assert ratio < 1
+    # deliberate fault: nodes that creep slip for ever
+    monkeypatch.setattr(History, "still", History.never_slips)
+    ratio, larger = turned_under_mean_loads(method)
+    assert ratio > 1
+    assert larger > 4 * size
 
 
 @pytest.mark.slow

@@ -253,6 +253,13 @@ class History:
         return np.abs(forth - back) > _CREEPS * (forth + back)
 
     @property
+    def still(self) -> Mask | None:
+        """Nodes that do not slip in the steady state, (n,): those that do not in the last cycle, and those that creep.
+        None where this is not known."""
+        never, creeps = self.never_slips, self.creeps
+        return None if never is None or creeps is None else never | creeps
+
+    @property
     def lasting(self) -> Array | None:
         """``changed``, and nan at nodes that creep: when nodes began to slip, or to stick, that do so in every cycle.
         None if this is not known."""

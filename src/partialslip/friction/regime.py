@@ -105,15 +105,15 @@ def _end_slips(x: Array, history: History, stick: StickInterval) -> tuple[EndSli
 
 def permanent_zone(x: Array, history: History, stick: StickInterval) -> tuple[float, float] | None:
     """Left and right end of the zone that never slips in a steady cycle in which slip turns round: the widest group of
-    nodes ``x`` (n,), ascending, in the ``stick`` zone that do not slip on any leg of the ``history``. An end is half
-    way between nodes, or that of the stick zone where no node slips beside it. (nan, nan) if all nodes slip, None if
-    the slip on the way is not known."""
-    if history.never_slips is None or history.creeps is None:
+    nodes ``x`` (n,), ascending, in the ``stick`` zone that are still in the ``history``. An end is half way between
+    nodes, or that of the stick zone where no node slips beside it. (nan, nan) if all nodes slip, None if the slip on
+    the way is not known."""
+    if history.still is None:
         return None
     inside = np.flatnonzero((x > stick.left) & (x < stick.right))
     if not len(inside):
         return None
-    still = np.pad((history.never_slips | history.creeps)[inside], 1).astype(np.int8)
+    still = np.pad(history.still[inside], 1).astype(np.int8)
     starts, stops = np.flatnonzero(np.diff(still) == 1), np.flatnonzero(np.diff(still) == -1)
     if not len(starts):
         return math.nan, math.nan

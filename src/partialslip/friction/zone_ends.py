@@ -263,13 +263,13 @@ def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callab
     return sorted(found)
 
 
-def turning_points(x: Array, never: Mask, slips: Mask) -> list[float]:
+def turning_points(x: Array, still: Mask, slips: Mask) -> list[float]:
     """Points where an end of the stick zone turned round, which leaves a kink in q: between the nodes ``x`` (n,),
-    ascending, that ``never`` (n,) slip in a cycle and those that do, but for the ends of the stick zone, beside which a
-    node ``slips`` (n,) from load point 1 to 2."""
-    starts = np.concatenate([[0], np.flatnonzero(np.diff(never)) + 1, [len(x)]])
+    ascending, that are ``still`` (n,) in a steady cycle and those that slip, but for the ends of the stick zone, beside
+    which a node ``slips`` (n,) from load point 1 to 2."""
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(still)) + 1, [len(x)]])
     starts = starts[:-1][np.diff(starts) >= _RUN]
-    turns = starts[1:][np.diff(never[starts])]
+    turns = starts[1:][np.diff(still[starts])]
     ends = np.append(np.flatnonzero(np.diff(slips)) + 1, len(x) + _RUN)
     turns = turns[np.abs(turns[:, None] - ends).min(axis=1) > 1]
     return ((x[turns - 1] + x[turns]) / 2).tolist()

@@ -245,8 +245,8 @@ def _solve_level(
             history = coulomb_constant_pressure.march(tangential, moved, normal.forces(frame, vertices), f, path)
             stepped = {}
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
-        if history.turns and history.never_slips is not None:
-            inner.append(turning_points(x, history.never_slips, history.slips))
+        if history.turns and history.still is not None:
+            inner.append(turning_points(x, history.still, history.slips))
         forces = normal.forces(normal.second, vertices)
         return SimilarLevel(
             vertices, history, zone(history), forces, tuple(itertools.chain.from_iterable(inner)), stepped
