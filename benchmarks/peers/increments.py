@@ -19,6 +19,7 @@ from partialslip.benchmark.codes import Code
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
 from partialslip.benchmark.codes.kratos import Kratos
+from partialslip.benchmark.codes.opensees import OpenSees
 from partialslip.benchmark.codes.own import Own
 from partialslip.benchmark.measured import answer_of
 from partialslip.errors import one_line
@@ -39,6 +40,7 @@ def codes(increments: int) -> dict[str, Code]:
         "CalculiX, penalty": Calculix(0.05, True, increments),
         "GetFEM": GetFEM(0.05, increments=increments),
         "Kratos": Kratos(0.1, 8, increments),
+        "OpenSees": OpenSees(0.05, 8, increments),
     }
 
 

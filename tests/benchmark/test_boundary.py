@@ -8,6 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
+
+from partialslip.benchmark.problem import read_frozen
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = ROOT / "benchmarks" / "peers" / "boundary.py"
@@ -85,6 +88,54 @@ def test_shapes_are_reciprocal(scripts):
     for way in (0, 1):
         same = found[:, way, :, way]
         assert np.allclose(same, same.T, atol=5e-2 * np.ptp(same))
+
+
+@pytest.fixture
+def freeze(monkeypatch):
+    """The script that freezes targets."""
+    monkeypatch.syspath_prepend(ROOT / "benchmarks")
+    return importlib.import_module("freeze_targets")
+
+
+def test_no_target_is_known_better_than_it_moved(freeze):
+    before = dict(read_frozen().targets["PS-24"])
+    moved = {key: replace(each, value=each.value + 0.1 * each.scale) for key, each in before.items()}
+    assert freeze.settled(before, before, "edition 1") == before
+    for target in freeze.settled(moved, before, "edition 1").values():
+        assert target.uncertainty == pytest.approx(0.1)
+        assert target.known.endswith("; edition 1 within 1e-01")
+
+
+@pytest.fixture
+def beyond(freeze):
+    """Function that lists the targets of tractions from which the finest boundary elements differ by more than the
+    uncertainty and what they are unsure by themselves."""
+    runs = [json.loads(line) for line in freeze.BOUNDARY.read_text("utf-8").splitlines()]
+
+    def listed(of):
+        found = []
+        for number in dict.fromkeys(run["problem"] for run in runs):
+            *_, before, last = (run["errors"] for run in runs if run["problem"] == number)
+            for key, target in of[number].items():
+                unsure = abs(last[key] - before[key]) + freeze.OWN.get(number, 0.0) if key in last else np.inf
+                if target.group in ("tractions", "levels") and abs(last[key]) > target.uncertainty + unsure:
+                    found.append((number, key))
+        return found
+
+    return listed
+
+
+def test_no_target_is_in_doubt(beyond):
+    assert beyond(read_frozen().targets) == []
+
+
+@pytest.mark.fault
+def test_an_uncertainty_that_is_too_small_is_seen(beyond):
+    """A pressure of PS-22 as sure as in edition 1.0rc5, and a shear of PS-24 as sure as two kinds of meshes say."""
+    targets = {number: dict(some) for number, some in read_frozen().targets.items()}
+    targets["PS-22"]["p_max"] = replace(targets["PS-22"]["p_max"], uncertainty=1.98e-4)
+    targets["PS-24"]["q1@-0.5"] = replace(targets["PS-24"]["q1@-0.5"], uncertainty=6e-4)
+    assert beyond(targets) == [("PS-22", "p_max"), ("PS-24", "q1@-0.5")]
 
 
 @pytest.mark.fault

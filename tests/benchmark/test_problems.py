@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 from closed import CLOSED
+from msgspec.structs import replace
 
 from partialslip import load_scene
 from partialslip.benchmark import read_problems
-from partialslip.benchmark.freeze import frozen_parts
+from partialslip.benchmark.freeze import covering, frozen_parts
 from partialslip.benchmark.measured import GROUPS, quantities
 from partialslip.benchmark.problem import EDITION, chosen_problems, problem_checksum, read_frozen, texts
 from partialslip.errors import InputError
@@ -53,6 +54,15 @@ def test_problems_are_chosen_by_patterns():
     assert list(chosen_problems("PS-0?, PS-02")) == [number for number in PROBLEMS if number < "PS-10"]
     with pytest.raises(InputError, match=r"--problems 'PS-99': must be numbers of PS-0"):
         chosen_problems("PS-99")
+
+
+@pytest.mark.parametrize(("off", "unsure", "covered"), [(-3e-4, 1e-5, 3.1e-4), (5e-5, 1e-5, 1e-4)])
+def test_an_uncertainty_grows_to_cover_another_way(off, unsure, covered):
+    target = replace(PROBLEMS["PS-22"].targets["p@0"], uncertainty=1e-4, known="march")
+    found = covering(target, "others", off, unsure)
+    assert found.uncertainty == pytest.approx(covered)
+    assert found.value == target.value
+    assert found.known == f"march; others within {abs(off):.0e}"
 
 
 @pytest.mark.slow

@@ -13,9 +13,11 @@ from closed import CLOSED
 from partialslip.benchmark import read_problems, turning
 from partialslip.benchmark.codes.calculix import Calculix
 from partialslip.benchmark.codes.getfem import GetFEM
-from partialslip.benchmark.increments import gradual
+from partialslip.benchmark.codes.opensees import OpenSees
+from partialslip.benchmark.increments import gradual, refined
 from partialslip.benchmark.neutral import files
 from partialslip.benchmark.turning import event_by_event, slip_reverses
+from partialslip.export.load_steps import steps_of
 from partialslip.halfplane import contact
 from partialslip.halfplane.turning import half_cycle
 from partialslip.run import run
@@ -121,6 +123,17 @@ def test_increments_are_those_that_the_problem_needs():
     assert [steps(NUMBER, given) for given in (1, 8, 64)] == [1, 8, 64]
     assert "8 increments a step" in Calculix(0.1, True, 8).settings
     assert "increments" not in GetFEM(0.1).settings
+
+
+def test_codes_take_just_the_increments_that_are_asked_for():
+    """After pressing: without friction yet, more of them change nothing."""
+    steps = steps_of(gradual(PROBLEM.scene, 2))
+    assert {step.increments for step in refined(steps, 8)} == {8}
+    press, *others = refined(steps, 8, 2)
+    assert press.increments == 8
+    assert {step.increments for step in others} == {2}
+    assert "stick, 2 increments a step" in OpenSees(0.1, 8, 2).settings
+    assert "at least 8 increments a step" in OpenSees(0.1, 8).settings
 
 
 def test_decks_take_the_increments():

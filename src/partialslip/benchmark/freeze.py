@@ -121,6 +121,13 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
     return targets, result.regime
 
 
+def covering(target: Target, words: str, off: float, unsure: float) -> Target:
+    """``target`` whose uncertainty covers what another way, called ``words``, finds: it is ``off`` from the target, and
+    ``unsure`` itself, both in the scale of the target."""
+    reached = max(target.uncertainty, abs(off) + unsure)
+    return replace(target, uncertainty=reached, known=f"{target.known}; {words} within {abs(off):.0e}")
+
+
 def _solved(problem: Problem, way: Derivation) -> Result:
     return run(problem.scene.replace(way.changes), way.method)[way.method]
 

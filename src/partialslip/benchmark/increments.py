@@ -1,6 +1,9 @@
 """Increments of load steps for codes that count slip from the start of an increment."""
 
+from collections.abc import Sequence
+
 from partialslip.benchmark.turning import slip_reverses
+from partialslip.export.load_steps import Step
 from partialslip.scene import Scene
 
 _INCREMENTS = 16  # accuracy: of the decks, from load point to load point
@@ -15,6 +18,13 @@ def gradual(scene: Scene, increments: int | None = None) -> Scene:
         least = _TURNING if slip_reverses(scene) else _INCREMENTS if anew else 1
         increments = max(scene.load.steps, least)
     return scene if increments == scene.load.steps else scene.replace(load={"steps": increments})
+
+
+def refined(steps: Sequence[Step], least: int, just: int | None = None) -> list[Step]:
+    """``steps`` with ``least`` increments or more each; those after pressing as they are if ``just`` so many are
+    asked for."""
+    leasts = (1 if just and step.name != "press" else least for step in steps)
+    return [step._replace(increments=max(step.increments, of)) for step, of in zip(steps, leasts, strict=True)]
 
 
 def told(increments: int | None) -> str:

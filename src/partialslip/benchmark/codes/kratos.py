@@ -6,7 +6,7 @@ from pathlib import Path
 
 from partialslip.benchmark.codes.process import CodeOutcome
 from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, solved
-from partialslip.benchmark.increments import gradual
+from partialslip.benchmark.increments import gradual, refined
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
 from partialslip.export.model import modelled
@@ -50,8 +50,6 @@ class Kratos:
             made = modelled(scene, self.size, growth=GROWTH, stiffer=STIFFER)
         except InputError:
             return None
-        least = 1 if self.just else self.increments
-        counts = (max(each.increments, self.increments if each.name == "press" else least) for each in made.steps)
-        steps = [step._replace(increments=count) for step, count in zip(made.steps, counts, strict=True)]
+        steps = refined(made.steps, self.increments, self.just)
         with tempfile.TemporaryDirectory() as folder:
             return solved(HOST, scene, of_scene(scene, steps) | of_model(made), Path(folder))

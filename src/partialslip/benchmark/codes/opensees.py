@@ -6,7 +6,7 @@ from pathlib import Path
 
 from partialslip.benchmark.codes.process import CodeOutcome
 from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, solved
-from partialslip.benchmark.increments import gradual
+from partialslip.benchmark.increments import gradual, refined
 from partialslip.benchmark.neutral import GROWTH
 from partialslip.errors import InputError
 from partialslip.export.model import modelled
@@ -22,11 +22,12 @@ _MATCH = 1e-6  # fixed: distance of nodes that face each other, in a, far below 
 
 @dataclass(frozen=True)
 class OpenSees:
-    """OpenSees with elements of ``size`` a, at least so many ``increments`` a step after pressing, and ``sticking``,
-    the stiffness of sticking, in E/a."""
+    """OpenSees with elements of ``size`` a, at least so many ``increments`` a step, or, if given, ``just`` so many
+    after pressing, and ``sticking``, the stiffness of sticking, in E/a."""
 
     size: float
     increments: int
+    just: int | None = None
     sticking: float = 1000.0
 
     @property
@@ -38,11 +39,12 @@ class OpenSees:
     def settings(self) -> str:
         """Settings in words."""
         kind = f"linear quadrilaterals of {self.size:g} a along the contact, SimpleContact2D with multipliers"
-        return f"{kind}, {self.sticking:g} E/a on stick, at least {self.increments} increments a step"
+        increments = f"{self.just}" if self.just else f"at least {self.increments}"
+        return f"{kind}, {self.sticking:g} E/a on stick, {increments} increments a step"
 
     def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if there is no model, the upper body would have to turn, or the meshes do not match."""
-        scene = gradual(scene)
+        scene = gradual(scene, self.just)
         if any(M for _, M in scene.pressing):
             return None
         try:
@@ -52,8 +54,7 @@ class OpenSees:
         lines = [sorted(part.mesh.points[part.contact, 0] / made.a) for part in made.parts]
         if len(lines[0]) != len(lines[1]) or max(abs(x - y) for x, y in zip(*lines, strict=True)) > _MATCH:
             return None
-        counts = (max(each.increments, self.increments) for each in made.steps)
-        steps = [step._replace(increments=count) for step, count in zip(made.steps, counts, strict=True)]
+        steps = refined(made.steps, self.increments, self.just)
         with tempfile.TemporaryDirectory() as folder:
             told = of_scene(scene, steps) | of_model(made) | {"sticking": self.sticking}
             return solved(HOST, scene, told, Path(folder))
