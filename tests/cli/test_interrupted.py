@@ -33,8 +33,8 @@ VERIFY = ("verify", "--suite", "stress", "--only", "1", "--only", "2", "--proces
 FILES = ["report.html", "results.json", "state.npz", "tractions.csv"]
 
 # Runs the command line as often as asked, with a stop at the n-th of the system calls that change files in the folder
-# out; n = 0 counts them. Each run is a fork of one process, which has imported everything, solved the scene and drawn its
-# figures: all this takes much longer than what is stopped, to write the files.
+# out; n = 0 counts them. Each run is a fork of one process, which has imported everything, solved the scene and drawn
+# its figures: all this takes much longer than what is stopped, to write the files.
 STOPPER = """
 import json, os, signal, sys
 import partialslip
