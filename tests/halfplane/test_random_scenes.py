@@ -7,7 +7,7 @@ import functools
 import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ from partialslip.halfplane import one_step_zone as stick_zone
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import loading
 from partialslip.halfplane.slip import dissipation
-from partialslip.halfplane.steady import transition
+from partialslip.halfplane.steady import stick_zones, transition
 from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.turning import Turning
 from partialslip.result import StickZone
@@ -77,14 +77,21 @@ class Answer:
         least, (left, right) = self.pressed.shape.pressure(y), cycle.permanent or (1.0, -1.0)
         sticks = (y > left) & (y < right)
         least[sticks] = np.abs(dq)[sticks] / 2
-        for share in np.arange(1, 40) / 40 if cycle.holds and not cycle.one_way else ():
-            if self.turns:
-                so_far = cycle.part(share).traction(y)
-            else:
-                changes = share * self.shear, share * self.tension
-                so_far = loading(self.pressed, self.f, *changes, bound=2).traction(y)
-            least[sticks] = np.maximum(least, np.abs(so_far - dq / 2))[sticks]
+        shares = np.arange(1, 40) / 40 if cycle.holds and not cycle.one_way else ()
+        stages = [cycle.part(share) for share in shares] if self.turns else stages_of(cycle, shares)
+        for stage in stages:
+            least[sticks] = np.maximum(least, np.abs(stage.traction(y) - dq / 2))[sticks]
         return 1 - np.trapezoid(least, y) * 2 / np.pi
+
+
+def stages_of(whole, shares):
+    """Loadings by ``shares`` of the loads of the ``whole`` one, whose stick zones are found together."""
+    if not len(shares):
+        return []
+    loads = [shares * each for each in (whole.Qf, whole.sf)]
+    zones = np.transpose(stick_zones(*loads, whole.seen)).tolist()
+    found = zip(*(each.tolist() for each in loads), zones, strict=True)
+    return [replace(whole, Qf=Qf, sf=sf, zone=StickZone(e, c, int(s))) for Qf, sf, (e, c, s) in found]
 
 
 def pressed_by(random, pressure):
@@ -261,7 +268,7 @@ def slow(first, end, step=1):
 # Of 7,000 scenes the first 1,600 showed all that was wrong once, but for scenes that nearly stick: of these more.
 # Gradual loads whose slip turns round are followed, which takes seconds a scene: of these the first 48, one of each
 # kind on each profile; number 70 once went on for ever. More of them are in test_certificate, in test_gradual_table and
-# in ``verify --suite stress``, which has a hundred scenes of another seed.
+# in ``verify --suite stress``, of which the long checks take one of each again, of another seed.
 NEARLY_STUCK = slow(KINDS.index("near-stuck"), 3_750, len(KINDS))
 ONE_OF_EACH = len(KINDS) * len(PROFILES)
 FOLLOWED = {*range(ONE_OF_EACH), 70}

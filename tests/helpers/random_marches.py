@@ -5,6 +5,7 @@ from coulomb import recorded
 from numpy.polynomial import Legendre, legendre
 
 import partialslip
+from partialslip.judge import Outcome, conditions
 from partialslip.verify.random_scenes import draw
 from partialslip_fem import goals
 
@@ -47,8 +48,14 @@ def forces(traction, order):
     return of(traction.p), *(None if q is None else of(q) for q in (traction.q1, traction.q2))
 
 
+def missed(result):
+    """What a result misses of the conditions on it alone: finite numbers, small residuals."""
+    return [f"{each.quantity} {each.error}" for each in conditions(result) if each.outcome is Outcome.MISSED]
+
+
 def complaints(scene, result, marches):
     """What is wrong with a result of finite elements and the load steps that it took, on all meshes."""
+    yield from missed(result)
     certificate, f = result.certificate, scene.friction.f
     if not marches and result.last_cycle_change is not None:
         yield "nothing was solved"

@@ -155,6 +155,7 @@ class SlipZones:
 
 Acting = Shear | Turned | SlipZones
 _Acting = Contact | Acting
+Integrals = dict[Cauchy, Complex]
 
 
 class Points(NamedTuple):
@@ -168,6 +169,11 @@ class Points(NamedTuple):
     def of(cls, x: Array, y: Array) -> "Points":
         """Points (``x``, ``y``); those of the lower body have y <= 0."""
         return cls(x, np.abs(y), np.where(y <= 0, 1.0, -1.0))
+
+    @classmethod
+    def on_both_sides(cls, x: Array) -> tuple["Points", "Points"]:
+        """Points ``x`` on the surfaces of the lower and of the upper body."""
+        return cls(x, 0 * x, np.ones_like(x)), cls(x, 0 * x, -np.ones_like(x))
 
     def scaled(self, contact: Contact) -> Complex:
         """x + i y, scaled by ``contact``, for Cauchy integrals."""
@@ -204,13 +210,16 @@ class Fields:
 
     def surface(self, x: Array) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
-        sides = np.ones_like(x), -np.ones_like(x)
-        return np.stack([self.at(Points(x, 0 * x, side), self.ends)[:, 0] for side in sides])
+        integrals: Integrals = {}
+        return np.stack([self.at(side, self.ends, integrals)[:, 0] for side in Points.on_both_sides(x)])
 
-    def at(self, at: "Points", states: Sequence[StressState]) -> Array:
-        """sigma_xx, sigma_yy and sigma_xy (Pa) at k points: (s, 3, k), by state."""
+    def at(self, at: "Points", states: Sequence[StressState], integrals: Integrals | None = None) -> Array:
+        """sigma_xx, sigma_yy and sigma_xy (Pa) at k points: (s, 3, k), by state.
+
+        Points on both sides of the surface have the same ``integrals``, which the first call puts in.
+        """
         made: dict[_Acting, Array] = {}
-        integrals: dict[Cauchy, Complex] = {}
+        integrals = {} if integrals is None else integrals
 
         def stresses(of: _Acting) -> Array:
             if of not in made:

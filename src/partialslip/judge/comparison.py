@@ -140,6 +140,8 @@ def compare(
     scene: AnyScene,
     accuracy: Accuracy | None,
     bars: Mapping[str, Bar] | None = None,
+    *,
+    stresses: bool = True,
 ) -> Comparison:
     """Compare ``result`` with ``reference`` and judge it.
 
@@ -155,6 +157,8 @@ def compare(
         With None only the quantities in ``bars`` have a bar.
     bars : mapping of str to Bar, optional
         Bars by quantity that replace the usual ones.
+    stresses : bool
+        Whether to compare the stresses that both results have.
 
     Raises
     ------
@@ -171,7 +175,7 @@ def compare(
     usual = {key: Bar(bar) for key, bar in wanted.bars.items()} if wanted else {}
     applied = {key: plus_estimate(bar, key, reference) for key, bar in {**usual, **own}.items()}
     unknown = reference_of(scene).unknown
-    every = measures(result, reference, scene, unknown)
+    every = measures(result, reference, scene, unknown, stresses=stresses)
     verdicts = [decide(each, applied.get(each.quantity), result) for each in every]
     nodal = _nodal_errors(result, reference, scene.friction.f)
     regime = judge_regime(result, reference, scene, applied, unknown)

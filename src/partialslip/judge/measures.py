@@ -47,13 +47,15 @@ class Measure:
     undetermined: str = ""
 
 
-def measures(result: Result, reference: Result, scene: Scene, unknown: Mapping[str, str]) -> Iterator[Measure]:
-    """Yield the measures between ``result`` and ``reference`` for the ``scene``.
+def measures(
+    result: Result, reference: Result, scene: Scene, unknown: Mapping[str, str], *, stresses: bool = True
+) -> Iterator[Measure]:
+    """Yield the measures between ``result`` and ``reference`` for the ``scene``, those of ``stresses`` if wanted.
 
     A quantity that does not exist has no values and no error. An undetermined quantity has values and an error, but
     is not judged; nor is one that is ``unknown`` for the scene (by quantity, why).
     """
-    for quantity, scale, true, found, error in _measured(result, reference, scene):
+    for quantity, scale, true, found, error in _measured(result, reference, scene, stresses):
         if absent := _absent(quantity, reference, scene):
             yield Measure(quantity, scale, None, None, None, absent)
         else:
@@ -87,7 +89,7 @@ def _undetermined(quantity: str, result: Result, reference: Result, unknown: Map
 _Values = tuple[str, str, float | None, float | None, float | None]
 
 
-def _measured(result: Result, reference: Result, scene: Scene) -> Iterator[_Values]:
+def _measured(result: Result, reference: Result, scene: Scene, stresses: bool) -> Iterator[_Values]:
     """Yield (quantity, scale, reference value, value, error)."""
     a, p0, f = reference.a, reference.p0, scene.friction.f
     yield _apart("a", "a", 1.0, result.a / a)
@@ -113,6 +115,8 @@ def _measured(result: Result, reference: Result, scene: Scene) -> Iterator[_Valu
     yield _apart("q_max", "f p0", *((_q_max(each) / (f * p0) if f else math.nan) for each in (to, of)))
     for key in levels:
         yield key, NORM, None, None, errors[key]
+    if not stresses:
+        return
     if result.surface and reference.surface:
         largest, true = result.surface.largest[1], reference.surface.largest[1]
         yield _apart("largest", "of exact", math.copysign(1.0, true), largest / abs(true))

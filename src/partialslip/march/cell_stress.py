@@ -6,13 +6,13 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from partialslip.arrays import Array, Mask
+from partialslip.arrays import Array, Complex, Mask
 from partialslip.friction.below import under_shear
 from partialslip.friction.history import Steps
 from partialslip.friction.phases import Phases
 from partialslip.friction.piecewise import PiecewiseCauchy
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.stress import Fields, Points, SlipZones, StressState
+from partialslip.halfplane.stress import Fields, Integrals, Points, SlipZones, StressState
 from partialslip.march.pressing import NormalLoads
 
 _SLIPS = 1e-9  # accuracy: distance of |q| from f p, relative, at which a cell slips
@@ -76,12 +76,21 @@ class CellStresses:
 
     def surface(self, x: Array) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
-        sides = (Points(x, 0 * x, side) for side in (np.ones_like(x), -np.ones_like(x)))
-        return np.stack([self.phases.interpolate(partial(self._at, at), _LOAD_POINTS)[:, 0] for at in sides])
+        along = partial(self._along, Points.on_both_sides(x))
+        return np.moveaxis(self.phases.interpolate(along, _LOAD_POINTS), 1, 0)
+
+    def _along(self, sides: Sequence[Points], steps: Sequence[int]) -> Array:
+        """sigma_xx (s, 2, k), by step and body, on both ``sides``, whose integrals are the same."""
+        sheared, integrals = self._sheared(sides[0].scaled(self.frame), steps), Integrals()
+        return np.stack([self._sum(at, steps, sheared, integrals)[:, 0] for at in sides], axis=1)
 
     def _at(self, at: Points, steps: Sequence[int]) -> Array:
-        result = self._pressed.at(at, [self.states[step] for step in steps])
-        T, T_z = self._sheared(at.scaled(self.frame), steps)
+        return self._sum(at, steps, self._sheared(at.scaled(self.frame), steps))
+
+    def _sum(self, at: Points, steps: Sequence[int], sheared: Complex, integrals: Integrals | None = None) -> Array:
+        """Stresses from those of pressure and from the Cauchy integrals of shear, ``sheared``."""
+        result = self._pressed.at(at, [self.states[step] for step in steps], integrals)
+        T, T_z = sheared
         result += np.moveaxis(under_shear(T, -at.depth / self.frame.a * T_z, at.side), 1, 0)
         return result
 

@@ -236,7 +236,7 @@ def _judged(case: Case, method: str, result: Result, reference: Result | None) -
     if reference:
         own = {key.removeprefix(f"{method}."): bar for key, bar in case.bars.items() if key.startswith(f"{method}.")}
         accuracy = None if case.meshes or case.scene.fem.size else case.scene.fem.accuracy
-        every = compare(result, reference, case.scene, accuracy, own).verdicts
+        every = compare(result, reference, case.scene, accuracy, own, stresses=False).verdicts
         verdicts = [verdict for verdict in every if verdict.quantity in ("regime", *BARS)]
         yield from verdicts
         yield from estimate_verdicts(verdicts, reference)
