@@ -406,10 +406,7 @@ class _Refinement:
         """Errors due to elements of given sizes at ends and kinks, to round faces and to corners."""
         solution, goal = self.solution, self.goal
         found = estimate.end_errors(solution, at_ends, gaps(solution, self.problem), at_kinks)
-        return {
-            key: error + goal.facet_error * (key in estimate.END_KEYS) + goal.tilts.get(key, 0.0)
-            for key, error in found.items()
-        }
+        return {key: error + goal.chords.get(key, 0.0) + goal.tilts.get(key, 0.0) for key, error in found.items()}
 
     def _estimate_together(self) -> dict[str, float]:
         """Solve once more with elements of the neighbouring order and add the errors away from the ends to ``errors``.

@@ -1,8 +1,8 @@
 """What an accuracy requires of the mesh: element sizes at the ends of zones, growth, round faces and corners.
 
 The constants of this module and of :mod:`partialslip_fem.adapt` change the cost of a run. They do not enter its
-error estimates, except ``_FACET_SHARE``, ``_CORNER_ERROR`` and ``_TILTS``, which are added to these. Scripts that
-measure the constants are named where there are any.
+error estimates, except ``_FACET_SHARE``, ``_OF_FACETS``, ``_CORNER_ERROR`` and ``_TILTS``, which are added to these.
+Scripts that measure the constants are named where there are any.
 """
 
 import math
@@ -40,7 +40,12 @@ _AWAY_SHARE = 0.5  # cost: of AIM: error away from the ends ...
 # cost: ... and the same, by order, if elements grow faster near the ends of zones than elsewhere, which adds to it.
 _EASED_SHARE = {4: 0.2, 6: 0.1}
 _END_SHARE = 0.33  # cost: of AIM: largest error due to the elements at the ends
-_FACET_SHARE = 0.25  # accuracy: largest distance of a round face from the elements, and error of the ends due to it
+_FACET_SHARE = 0.25  # accuracy: largest distance of a round face from the elements
+# accuracy: errors of ends due to a round face, in that distance. Pressure moves a surface as it moves one that is
+# parallel to it: to first order, chords do not change the contact. Measured on four pads (R = 20 a): chords twice as
+# long move a and the ends by up to 0.15 of the distance at accuracies of 1e-3 and 1e-4, and m and n by 0.1 to 1.1; at
+# 2e-5 by up to 0.7 and 4, of which an unknown part is due to meshes that differ otherwise
+_OF_FACETS = {"a": 0.25, "left": 0.25, "right": 0.25, "m": 1.0, "n": 1.0}
 # accuracy: largest change of the contact due to elements at corners, as a multiple of the accuracy ...
 _CORNER_ERROR = 10.0
 LOOSEST = 1e-2  # limit: ... and absolute; also the loosest accuracy that an allowance of CPU seconds may lead to
@@ -73,8 +78,8 @@ class Goal:
         Growth of the elements for which the error away from the ends is small enough.
     facet_error, corner_error : float
         As for :class:`partialslip_fem.bodies.Grading`.
-    tilts : dict of float
-        Errors due to the corners, by key.
+    tilts, chords : dict of float
+        Errors due to the corners and to round faces, by key.
     """
 
     accuracy: float
@@ -84,20 +89,23 @@ class Goal:
     facet_error: float
     corner_error: float
     tilts: dict[str, float]
+    chords: dict[str, float]
 
     @classmethod
     def at(cls, accuracy: float, problem: Problem) -> "Goal":
         """The goal for ``accuracy`` in ``problem``."""
         corner_error = min(_CORNER_ERROR * accuracy, LOOSEST)
         tilting = any(part.extent for part in problem.parts)
+        facet_error = _FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0
         return cls(
             accuracy=accuracy,
             bar=BAR * accuracy,
             end_error=_END_SHARE * AIM * accuracy,
             growth=growth_at(accuracy, problem.order),
-            facet_error=_FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0,
+            facet_error=facet_error,
             corner_error=corner_error,
             tilts={key: share * corner_error * tilting for key, share in _TILTS.items()},
+            chords={key: share * facet_error for key, share in _OF_FACETS.items()},
         )
 
     def element_size(self, solution: MeshSolution, problem: Problem) -> float:

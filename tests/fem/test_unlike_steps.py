@@ -42,6 +42,7 @@ def test_steps_in_which_slip_turns_round_are_known_to_be_too_few(few):
     assert few.shares["steps"]["m"] > off
     assert fine.shares["steps"]["m"] < few.shares["steps"]["m"] / 4
     assert len(told(few)) == 1
+    assert sum(note.startswith("path-dependent: slip reverses between the load points") for note in fine.notes) == 1
 
 
 @pytest.mark.slow
@@ -58,6 +59,7 @@ def test_steps_that_suffice_are_not_told():
     result = solved(1)
     assert result.shares["steps"]["m"] < 1e-6
     assert not told(result)
+    assert not any("path-dependent" in note for note in result.notes)
 
 
 @pytest.mark.slow

@@ -213,6 +213,11 @@ class History:
         return sliding_window_view(np.pad(moved, _BESIDE // 2), _BESIDE).max(axis=-1)
 
     @property
+    def reverses(self) -> bool:
+        """In phase: whether slip reverses on a leg of the last cycle: on the way, or from load step to load step."""
+        return self.path.in_phase and (self.turns or self.path.turns or bool(self.around.reversing.any()))
+
+    @property
     def ratchets(self) -> float:
         """Largest net slip of the last cycle, relative to the largest slip of half a cycle, of nodes that stay in
         contact; nearly 0 if they do not slip."""
@@ -310,6 +315,17 @@ class Steps(NamedTuple):
     def bounds(self) -> Array:
         """Friction bounds f p (s, n)."""
         return np.broadcast_to(self.f * self.pressures, self.forces.shape)
+
+    @property
+    def reversing(self) -> Mask:
+        """Nodes (n,) that slip at the end of a step, and stick or slip the other way at the end of the next step on the
+        same leg, still in contact."""
+        bounds = self.bounds
+        ways = np.where((np.abs(self.forces) >= (1 - _SLIPS) * bounds) & (bounds > 0), np.sign(self.forces), 0.0)
+        legs = np.repeat(np.arange(len(self.ways)), [len(way) for way in self.ways])
+        goes_on = (legs[1:] == legs[:-1])[:, None] & (bounds[1:] > 0)
+        reversing: Mask = (goes_on & (ways[:-1] != 0) & (ways[1:] != ways[:-1])).any(axis=0)
+        return reversing
 
 
 def _settled(path: Path, forces: Array, before: Array, bound: Array, largest: float) -> bool:

@@ -19,6 +19,8 @@ _SLIPS = 1e-6  # accuracy: slip in a cycle, in the largest possible slip, above 
 _WORK = 1e-9  # accuracy: dissipated energy, in f P times a displacement of A P, above rounding
 _RATCHETS = 1e-3  # limit: net slip of a cycle, relative to the slip of half a cycle, above which a steady q ratchets
 
+_REVERSES = f"{PATH_DEPENDENT}between the load points; m, n, q are those of"
+
 
 def steady_state(
     scene: Scene,
@@ -68,8 +70,9 @@ def steady_state(
             "tractions repeat, slip does not: every cycle adds up to "
             f"{history.ratchets:.1g} times the slip of half a cycle",
         )
-    if anew and history.path.turns and regime in ("small tension", "large tension"):
-        notes += (f"{PATH_DEPENDENT}between the load points; m, n, q are those of loads that change gradually",)
+    # how far coupled bodies depend on their steps is told by :func:`steps_of_coupled`
+    if (history.path.turns or history.turns) and regime in ("small tension", "large tension"):
+        notes += (f"{_REVERSES} loads that change gradually",)
     few = not history.path.followed and history.path.most_steps < _FEW_STEPS
     if anew and few and history.dissipated > _WORK * history.bound.sum():
         steps = "a step" if history.path.most_steps == 1 else f"{history.path.most_steps} steps"
@@ -125,16 +128,17 @@ def permanent_zone(x: Array, history: History, stick: StickInterval) -> tuple[fl
 
 
 def steps_of_coupled(history: History | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
-    """A note on load steps of coupled bodies, where their ``errors`` are beyond the ``accuracy`` or, if empty, not
-    known."""
+    """A note on load steps of coupled bodies, where slip reverses from step to step, or their ``errors`` are beyond the
+    ``accuracy`` or, if empty, not known."""
     if not history or not history.path.moves:
         return ()
     bars = Asked(accuracy, accuracy).bars
-    if errors and all(error <= bars[key] for key, error in errors.items()):
-        return ()
     known = "too few for the accuracy" if errors else "whose error is not estimated"
+    doubted = f", {known}" * (not errors or any(error > bars[key] for key, error in errors.items()))
     steps = "1 step" if history.path.substeps == 1 else f"{history.path.substeps} steps"
-    return (f"coupled bodies go from load point to load point in {steps} (load.steps), {known}",)
+    if history.reverses:
+        return (f"{_REVERSES} {steps} from load point to load point (load.steps){doubted}",)
+    return (f"coupled bodies go from load point to load point in {steps} (load.steps){doubted}",) if doubted else ()
 
 
 def doubts(change: float | None, errors: Mapping[str, float], accuracy: float) -> tuple[str, ...]:
