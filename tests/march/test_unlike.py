@@ -76,6 +76,27 @@ def test_stages_of_pressing_bear_their_load():
     assert (normal[0] - normal[1]) / (2 * h) == pytest.approx(traction, rel=1e-3)
 
 
+def middle(f):
+    """Pressure of a stage of pressing at x = 0, where the bodies touched first."""
+    normal, _ = PunchGrowth.of(-0.114, f).stage(np.array([-1e-3, 1e-3]))
+    return (normal[0] - normal[1]) / 2e-3
+
+
+@pytest.mark.parametrize("f", [0.08, 0.3])
+def test_pressure_where_bodies_touched_first_needs_no_finer_punch(f, monkeypatch):
+    found = middle(f)
+    monkeypatch.setattr(punch_growth, "_MIDDLE", punch_growth._MIDDLE / 10)
+    assert found == pytest.approx(middle(f), rel=1e-5)
+
+
+@pytest.mark.fault
+def test_a_punch_that_is_coarse_in_the_middle_is_seen(monkeypatch):
+    """With cells that only grow p is off by 2e-4."""
+    found = middle(0.3)
+    monkeypatch.setattr(punch_growth, "_MIDDLE", 1.0)
+    assert abs(middle(0.3) / found - 1) > 1e-4
+
+
 def test_compliance_of_unlike_half_planes_is_reciprocal():
     C = relative(np.array([-1.0, -0.4, 0.1, 0.2, 1.0]), 0.2)
     assert C.opening == pytest.approx(C.xy.T)
