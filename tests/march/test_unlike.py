@@ -41,25 +41,6 @@ def test_punch_with_all_of_the_coupling(f, c):
     assert stick_zone(1 / 7, f, True) == pytest.approx(c, abs=0.02 * min(c, 1 - c))
 
 
-def pressure_in_the_middle():
-    """p over the middle 0.01 a of a stage of pressing, with a force of 1."""
-    before, after = PunchGrowth.of(0.25, 0.5).stage(np.array([-0.005, 0.005]))[0]
-    return (before - after) / 0.01
-
-
-@pytest.mark.slow
-def test_pressure_of_stages_in_the_middle(monkeypatch):
-    """There they have the pressure of the punch over the square of the distance from there."""
-    found = pressure_in_the_middle()
-    with monkeypatch.context() as finer:
-        finer.setattr(punch_growth, "_GROWTH", 0.025)
-        finer.setattr(punch_growth, "_MIDDLE", 0.005)
-        assert found == pytest.approx(pressure_in_the_middle(), abs=5e-6)
-    # deliberate fault: cells there are as wide as they grow
-    monkeypatch.setattr(punch_growth, "_MIDDLE", 1.0)
-    assert pressure_in_the_middle() > found + 4e-5
-
-
 def test_stages_of_pressing_bear_their_load():
     """The resultants of the stage are those of its tractions, and the sums are P and zero."""
     punch = PunchGrowth.of(-0.1, 0.2)
