@@ -276,6 +276,14 @@ class Problem:
         return self.even_gap is not None and not self._sized
 
     @property
+    def touches_first(self) -> float | None:
+        """Point at which bodies of unlike materials touch first under an even gap: q, locked in while they are pressed
+        together, varies there like x log|x|, and p like |x|. None where there is no such point."""
+        if self.even_gap is None or self.even_gap.places[0] or not (self.beta and self.path) or self.start:
+            return None
+        return -self.origin
+
+    @property
     def sized(self) -> bool:
         """The same, nearly, of bodies of one material and of a size, which are coupled."""
         even = self.even_gap is not None and (self.even_gap.parabolic or all(part.even for part in self.parts))

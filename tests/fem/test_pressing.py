@@ -22,6 +22,7 @@ from partialslip.friction.pressing import EvenGap, FlatPunch, Punches
 from partialslip.halfplane.punch import Punch as Flats
 from partialslip.judge.means import norm_errors
 from partialslip_fem import solve, solving
+from partialslip_fem.problem import Problem
 
 BETA = 1 / 7
 
@@ -274,6 +275,20 @@ def test_estimates_of_unlike_half_planes_hold(accuracy, march):
     assert abs(result.n / result.a - INDEPENDENT) < result.estimate["n"]
     assert abs(result.a / march.a - 1) < result.estimate["a"] + march.estimate["a"]
     assert result.estimate["m"] < accuracy
+
+
+def test_pressure_where_unlike_half_planes_touch_first(march, monkeypatch):
+    """It has a kink there, as shear is locked in like x log|x|."""
+
+    def off():
+        result = solve(unlike(), plan(unlike()))
+        p, other = (each.traction.at(np.zeros(1)).p[0] for each in (result, march))
+        return abs(p - other) / march.p0
+
+    assert off() < 1.5e-4
+    # deliberate fault: elements are as wide there as they grow
+    monkeypatch.setattr(Problem, "touches_first", None)
+    assert off() > 1e-3
 
 
 @pytest.mark.slow
