@@ -35,9 +35,9 @@ _KINK_SLACK = 1.5
 _MOST_UNKNOWNS = 200_000  # limit: on a mesh from which no finer one is made
 _CHOICES = 13  # cost: accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
 _MOST_CUTS = 16  # limit: meshes whose contact line cuts the contact; the next line is a tenth of a wider on both sides
-# cost: element size where bodies of unlike materials touch first, in half-widths over the root of the accuracy: there p
-# is off by 0.03 times that size (measured)
-_AT_FIRST = 0.1
+# cost: where bodies of unlike materials touch first p is off by 0.03 times the element size (measured): the size, in
+# half-widths over the accuracy, from which on the mesh is refined there, and to which
+_AT_FIRST = 30.0, 10.0
 _OF_HALF = 0.01  # cost: element size at the corners of the second punch of pressing, in half-widths of the contact
 # cost: of the CPU seconds left: predicted seconds beyond them with which the scene's accuracy is tried nevertheless
 _OVERDRAFT = 0.3
@@ -351,9 +351,10 @@ class _Refinement:
             for point in (middle - HALF * a, middle + HALF * a):  # corners of the second punch of pressing
                 if grading.at(np.array([point]))[0] > size:
                     sizes[point] = size
-        size, first = _AT_FIRST * math.sqrt(goal.accuracy) * a / coarsest, self.problem.touches_first
-        if first is not None and grading.at(np.array([first]))[0] > size:
-            sizes[first] = size
+        if (first := self.problem.touches_first) is not None:
+            most, size = (share * goal.accuracy * a / coarsest for share in _AT_FIRST)
+            if grading.at(np.array([first]))[0] > most:
+                sizes[first] = size
         sizes |= self._at_kinks_of_friction(grading, contact, coarsest)
         # two vertices far nearer to each other than elements are wide make an element without an area
         kept = apart(sorted(sizes, key=lambda point: sizes[point]), _MERGED * min(sizes.values()))
