@@ -268,7 +268,7 @@ def slow(first, end, step=1):
 # Of 7,000 scenes the first 1,600 showed all that was wrong once, but for scenes that nearly stick: of these more.
 # Gradual loads whose slip turns round are followed, which takes seconds a scene: of these the first 48, one of each
 # kind on each profile; number 70 once went on for ever. More of them are in test_certificate, in test_gradual_table and
-# in ``verify --suite stress``, of which the long checks take one of each again, of another seed.
+# in ``verify --suite stress``, which has a hundred scenes of another seed.
 NEARLY_STUCK = slow(KINDS.index("near-stuck"), 3_750, len(KINDS))
 ONE_OF_EACH = len(KINDS) * len(PROFILES)
 FOLLOWED = {*range(ONE_OF_EACH), 70}
