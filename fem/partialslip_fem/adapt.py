@@ -35,9 +35,9 @@ _KINK_SLACK = 1.5
 _MOST_UNKNOWNS = 200_000  # limit: on a mesh from which no finer one is made
 _CHOICES = 13  # cost: accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
 _MOST_CUTS = 16  # limit: meshes whose contact line cuts the contact; the next line is a tenth of a wider on both sides
-# cost: where bodies of unlike materials touch first p is off by 0.03 times the element size (measured): the size, in
-# half-widths over the accuracy, from which on the mesh is refined there, and to which
-_AT_FIRST = 30.0, 10.0
+# cost: element size where bodies of unlike materials touch first, in half-widths over the accuracy: p is off there by
+# 0.03 times the size (measured). The mesh is refined where elements are larger than this many times
+_AT_FIRST, _FIRST_SLACK = 10.0, 3.0
 _OF_HALF = 0.01  # cost: element size at the corners of the second punch of pressing, in half-widths of the contact
 # cost: of the CPU seconds left: predicted seconds beyond them with which the scene's accuracy is tried nevertheless
 _OVERDRAFT = 0.3
@@ -332,13 +332,17 @@ class _Refinement:
         at_kinks = np.clip(estimate.kink_sizes(solution, self.goal.end_error * BARS["q1"]), self.size, None)
         goal, eased = self.goal, goals.eased(solution, self.problem, order, growth)
         grading = Grading(contact, sizes, growth / coarsest, None, goal.facet_error, goal.corner_error, eased)
+
+        def refine(point: float, size: float, slack: float = 1.0) -> None:
+            """Elements of the ``size``, in half-widths, at a ``point`` where they are larger than ``slack`` times."""
+            size = size * a / coarsest
+            if grading.at(np.array([point]))[0] > slack * size:
+                sizes[point] = size
+
         for kink, needed in zip(solution.kinks, at_kinks.tolist(), strict=True):
-            if grading.at(np.array([kink]))[0] > _KINK_SLACK * needed * a / coarsest:
-                sizes[kink] = needed * a / coarsest
-        size = goals.PASSING * math.sqrt(goal.accuracy) * a / coarsest
+            refine(kink, needed, _KINK_SLACK)
         for kink in solution.passing:
-            if grading.at(np.array([kink]))[0] > _KINK_SLACK * size:
-                sizes[kink] = size
+            refine(kink, goals.PASSING * math.sqrt(goal.accuracy), _KINK_SLACK)
         for low, high in solution.swept:
             # where surfaces that stick come into contact, what is locked in depends on the distance of the nodes
             size = (high - low) * goals.swept_size(goal.accuracy) / coarsest
@@ -347,14 +351,11 @@ class _Refinement:
                 point: size for point in np.linspace(low, high, count + 2)[1:-1].tolist() if size > sizes[points[0]]
             }
         if self.problem.sized:
-            size, middle = _OF_HALF * a / coarsest, (solution.left + solution.right) / 2
+            middle = (solution.left + solution.right) / 2
             for point in (middle - HALF * a, middle + HALF * a):  # corners of the second punch of pressing
-                if grading.at(np.array([point]))[0] > size:
-                    sizes[point] = size
+                refine(point, _OF_HALF)
         if (first := self.problem.touches_first) is not None:
-            most, size = (share * goal.accuracy * a / coarsest for share in _AT_FIRST)
-            if grading.at(np.array([first]))[0] > most:
-                sizes[first] = size
+            refine(first, _AT_FIRST * goal.accuracy, _FIRST_SLACK)
         sizes |= self._at_kinks_of_friction(grading, contact, coarsest)
         # two vertices far nearer to each other than elements are wide make an element without an area
         kept = apart(sorted(sizes, key=lambda point: sizes[point]), _MERGED * min(sizes.values()))

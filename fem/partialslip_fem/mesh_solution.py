@@ -13,7 +13,7 @@ from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.warm_start import Trail
-from partialslip.friction.zone_ends import StickInterval, turning_points
+from partialslip.friction.zone_ends import StickInterval
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import Body
 from partialslip_fem.recovery import traction
@@ -127,9 +127,7 @@ class MeshSolution:
     @property
     def turning(self) -> list[float]:
         """Points where an end of the stick zone turned round: kinks of q beside which its ends are known poorly."""
-        if not self.history or not self.history.turns or self.history.still is None:
-            return []
-        return turning_points(self.lower.x[self.nodes], self.history.still, self.history.slips)
+        return self.history.turning(self.lower.x[self.nodes]) if self.history else []
 
     @property
     def lower(self) -> Body:

@@ -8,7 +8,7 @@ from partialslip.arrays import Array, Indices
 from partialslip.friction import zone_ends
 from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
-from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, turning_points
+from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone
 from partialslip_fem.elasticity import Body
 from partialslip_fem.problem import Problem
 from partialslip_fem.recovery import traction
@@ -77,8 +77,7 @@ def shear_kinks(problem: Problem, line: Body, nodes: Indices, history: History) 
     found = finest(problem.start[1].x) if problem.start else []
     for q, bound in reversed(history.visited):
         found += kinks(x, bound, q, vertices, forces)
-    if history.turns and history.still is not None:
-        found += turning_points(x, history.still, history.slips)
+    found += history.turning(x)
     return tuple(apart(found, _SAME_KINK * (x[-1] - x[0]) / 2))
 
 

@@ -16,6 +16,7 @@ from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
 from partialslip.friction.limit import limit
 from partialslip.friction.load_path import Path
+from partialslip.friction.zone_ends import turning_points
 
 STEADY = 1e-6  # accuracy: change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 # accuracy: change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
@@ -263,6 +264,12 @@ class History:
         None where this is not known."""
         never, creeps = self.never_slips, self.creeps
         return None if never is None or creeps is None else never | creeps
+
+    def turning(self, x: Array) -> list[float]:
+        """Points where an end of the stick zone turned round, between the nodes ``x`` (n,); none where this is not
+        known."""
+        still = self.still if self.turns else None
+        return [] if still is None else turning_points(x, still, self.slips)
 
     @property
     def lasting(self) -> Array | None:

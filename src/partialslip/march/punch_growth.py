@@ -17,11 +17,12 @@ from partialslip.march.cells import compliance, graded_cells
 
 _END, _GROWTH = 1e-8, 0.05  # accuracy: size of cells at the punch's ends; growth
 # accuracy: size of cells in the middle, in the half-width of the stick zone: stages have the punch's tractions over the
-# square of the distance from there. With cells as wide as they grow p(0) of stages is off by 1e-4 (measured)
+# square of the distance from there. With cells as wide as they grow p(0) of stages is off by up to 2e-4
+# (measured)
 _MIDDLE = 0.01
-# accuracy: sizes of cells at the stick zone's ends, in their distance from the punch's ends: the
+# accuracy: sizes of cells at the stick zone's ends, in their distance from the punch's ends: the first mesh is refined
+# at Goodman's stick zone, each other at that of the mesh before
 _AT_STICK = (0.02, 0.002, 5e-4)
-# first mesh is refined at Goodman's stick zone, each other at that of the mesh before
 
 
 def relative(vertices: Array, beta: float, opening: bool = True) -> Relative:

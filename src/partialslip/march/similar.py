@@ -20,7 +20,7 @@ from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
-from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, turning_points, within
+from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, within
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
 from partialslip.halfplane.stress import BEYOND, along_surface
@@ -245,8 +245,7 @@ def _solve_level(
             history = coulomb_constant_pressure.march(tangential, moved, normal.forces(frame, vertices), f, path)
             stepped = {}
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
-        if history.turns and history.still is not None:
-            inner.append(turning_points(x, history.still, history.slips))
+        inner.append(history.turning(x))
         forces = normal.forces(normal.second, vertices)
         return SimilarLevel(
             vertices, history, zone(history), forces, tuple(itertools.chain.from_iterable(inner)), stepped
