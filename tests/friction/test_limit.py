@@ -8,7 +8,7 @@ from cell_contact import cells, loads
 
 from partialslip.friction import history
 from partialslip.friction.coulomb_constant_pressure import march
-from partialslip.friction.limit import limit
+from partialslip.friction.limit import change, limit, settled
 
 BOUND = np.array([1.0, 2.0, 0.5, 0.0])
 END, MODE = np.array([0.3, -1.2, 0.1, 0.0]), np.array([0.2, 0.1, -0.05, 0.0])
@@ -48,3 +48,32 @@ def test_skipped_cycles_change_nothing(Qf, sf, monkeypatch):
     for key in ("q1", "q2"):
         assert getattr(hastened, key) == pytest.approx(getattr(plain, key), abs=1e-6 * problem[-1].max())
     assert hastened.load_steps < plain.load_steps
+
+
+def ends(changes):
+    """Cycle after which cycles end, None if they go on."""
+    return next((count for count in range(1, len(changes) + 1) if settled(changes[:count])), None)
+
+
+@pytest.mark.parametrize("power", [1, 2])
+def test_slow_creep_is_followed_until_it_is_none(power):
+    creep = 50.0 / np.arange(1, 200) ** power
+    end = ends(creep.tolist())
+    assert creep[end - 1] <= 1 < creep[end - 2]
+
+
+def test_changes_that_are_rounding_and_fall_no_more_end_cycles():
+    rounding = np.random.default_rng(5).uniform(2, 5, 100).tolist()
+    assert 8 < ends([3e3, 200.0, 15.0, *rounding]) < 40
+
+
+def test_changes_too_large_for_rounding_go_on():
+    assert ends(np.random.default_rng(5).uniform(150, 500, 100).tolist()) is None
+
+
+def test_a_change_counts_beside_its_bound_and_the_rounding_of_all_forces():
+    forces, near = np.array([1.0, 2.0, 0.0]), np.array([1e-7, 2e-7, 0.0])
+    assert change(forces, forces, near, 3.0) == 0
+    assert change(forces + 1e-7 * np.eye(3)[0], forces, near, 0.0) == pytest.approx(1, rel=1e-6)
+    assert change(forces + 3e-14 * np.eye(3)[2], forces, near, 3.0) == pytest.approx(1 / 3, rel=1e-6)
+    assert change(0 * forces, 0 * forces, 0 * near, 0.0) == 0

@@ -14,13 +14,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
-from partialslip.friction.limit import limit
+from partialslip.friction.limit import change, limit, settled
 from partialslip.friction.load_path import Path
 from partialslip.friction.zone_ends import turning_points
 
 STEADY = 1e-6  # accuracy: change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
-# accuracy: change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
-_REPEATS = 3e-14
 # accuracy: changes of the last cycle that may lie between it and the limit, however few cycles went before
 _LIMIT = 10.0
 # accuracy: change over a cycle, in f p, that ends cycles near enough to the limit for ratios of changes to tell it
@@ -335,13 +333,6 @@ class Steps(NamedTuple):
         return reversing
 
 
-def _settled(path: Path, forces: Array, before: Array, bound: Array, largest: float) -> bool:
-    """Whether the ``forces`` (n,) after a cycle are those ``before`` it, with the ``bound`` (n,) at the end. Rounding
-    is that of the ``largest`` sum of forces, without sign, in the cycle."""
-    near = path.settled * bound + _REPEATS * largest
-    return bool((np.abs(forces - before) <= near).all())
-
-
 Advance = Callable[[Solution, Array, Array], tuple[Solution, Array]]
 
 
@@ -372,7 +363,7 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
     points, taken = [certified([step for step, _ in went[0]])], len(first)
     if path.half:
         return _reversed(path, points[0], went[0], f)
-    ended = [points[0].x]  # cycles, since some were skipped
+    ended, changes = [points[0].x], list[float]()  # of cycles, since some were skipped
     for _ in range(path.cycles):
         went = []
         for start, end, fractions in zip((path.cycle[-1], *path.cycle), path.cycle, ways, strict=False):
@@ -381,12 +372,13 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
             taken += len(fractions)
         largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
         bound = f * went[-1][-1][1]
-        if _settled(path, points[-1].x, points[-1 - len(went)].x, bound, largest):
+        changes.append(change(points[-1].x, points[-1 - len(went)].x, path.settled * bound, largest))
+        if settled(changes):
             break
         ended.append(points[-1].x)
         skipped = limit(ended, bound) if hastens else None
         if skipped is not None:
-            points[-1], ended = replace(points[-1], x=skipped, shift=np.nan), [skipped]
+            points[-1], ended, changes = replace(points[-1], x=skipped, shift=np.nan), [skipped], []
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]
     slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)

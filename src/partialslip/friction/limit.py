@@ -1,7 +1,7 @@
-"""The limit of cycles that come to the steady state in geometric progression.
+"""Where cycles end: nothing changes from one to the next any more, or their limit is known.
 
 A node beside an end of the stick zone may need hundreds of cycles to come to its bound, while nothing else changes any
-more. Aitken's method finds the limit of such a progression from four cycles.
+more. Aitken's method finds the limit of cycles in geometric progression from four of them.
 """
 
 from collections.abc import Sequence
@@ -10,9 +10,28 @@ import numpy as np
 
 from partialslip.arrays import Array
 
+# accuracy: change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
+_REPEATS = 3e-14
+# accuracy: changes over a cycle, over those that count as none, that are rounding where they have not fallen for so
+# many cycles
+_SMALL, _RESTLESS = 100.0, 8
 STATES = 4  # accuracy: ends of cycles that are looked at
 _CLEAN = 0.1  # accuracy: of the last change: what the progression may leave unexplained
 _STEADY = 0.3  # accuracy: of 1 - ratio: by how much the ratio may change from cycle to cycle
+
+
+def change(forces: Array, before: Array, near: Array, largest: float) -> float:
+    """Change of the ``forces`` (n,) over a cycle from those ``before`` it, over what counts as none: ``near`` (n,), and
+    the rounding of the ``largest`` sum of forces, without sign, in the cycle."""
+    none = near + _REPEATS * largest
+    return float(np.divide(np.abs(forces - before), none, out=np.zeros_like(none), where=none > 0).max())
+
+
+def settled(changes: Sequence[float]) -> bool:
+    """Whether nothing changes any more, from the ``changes`` of all cycles (:func:`change`); or nothing but roundings,
+    which narrow stick zones under large tension add up to more: small changes that fall no more."""
+    last, before = changes[-_RESTLESS:], changes[:-_RESTLESS]
+    return changes[-1] <= 1 or (bool(before) and max(last) <= _SMALL and min(last) >= min(before))
 
 
 def limit(states: Sequence[Array], bound: Array) -> Array | None:

@@ -315,7 +315,7 @@ class _Leg:
             forces = self._forces - np.where(sticks, p[:-1], 0.0)
             bounded = np.clip(forces, -self._bound, self._bound)
             beyond = np.setdiff1d(np.flatnonzero(forces != bounded), give)
-            if not len(beyond):
+            if not len(beyond) or len(give) + len(beyond) >= np.count_nonzero(sticks):  # one is to stick
                 break
             give = np.union1d(give, beyond)
             columns = tableau.columns(give)

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 # limit: what engineering contacts have, with a margin: from gels to above diamond
 _E = 1e7, 1e13  # Pa
 _SLOPE = 1e-7, 0.3  # limit: a/R: beyond these the surfaces are rough beside it, or not nearly flat
+_STRAIN = 0.1  # limit: of bulk tension over E, beyond what stays elastic
 _WIDEST = 0.5  # limit: m, half-width of a contact
 _TABLE = 1e-2, 1e2  # limit: reach of the places of friction.x, in a
 _HALF_WIDTH = math.sqrt(2 / math.pi)  # of Hertz contact, in the scene's characteristic length
@@ -33,6 +34,9 @@ def implausible(scene: "Scene") -> tuple[str, ...]:
     if isinstance(scene.profile, Hertz) and not _SLOPE[0] <= a / scene.profile.R <= _SLOPE[1]:
         size = "less than surfaces are smooth" if a < scene.profile.R else "far from nearly flat surfaces"
         found.append(f"a/R is about {a / scene.profile.R:.1g}, {size}: {hint}")
+    tension, softest = max(map(abs, scene.load.sigma), default=0.0), min(own.E for _, own in scene.material)
+    if tension > _STRAIN * softest:
+        found.append(line("load.sigma", tension, "Pa", f"{tension / softest:.2g} of E, more than any elastic strain"))
     if a > _WIDEST:
         found.append(line("a", a, "m", "the half-width of a very large contact"))
     if scene.friction.kinks:
