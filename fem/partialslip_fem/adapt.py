@@ -17,7 +17,7 @@ from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.expense import Expense, work_again
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
-from partialslip_fem.goals import Goal, NextMesh, course, gaps, size_reached, worst
+from partialslip_fem.goals import Goal, NextMesh, Outline, course, gaps, size_reached, worst
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.plates import compliance_error
 from partialslip_fem.problem import Problem
@@ -124,7 +124,7 @@ class _Refinement:
         self.limit = contact_line_limit(problem)
         self.goal = Goal.at(accuracy, problem)
         self.size, self.finer, self.least = FIRST_SIZE, goals.FINER, self.goal.growth
-        self.size_goal = 0.0
+        self.size_goal, self.outline = 0.0, self.goal.outline  # of the present mesh
         self.growth = 0.0  # of the present mesh away from the ends
         self.eased = False  # whether the present mesh grows faster near the ends
         self.block_width = 0.0  # width of the blocks of the present mesh
@@ -244,6 +244,9 @@ class _Refinement:
             ahead = course(self.size, self.finer, self.size_goal, least, problem.order)
         if self.solution.enclosed:
             self.size, self.growth, self.finer = ahead[0]
+            self.outline = self.goal.outline
+            if not size_reached(self.size, self.size_goal):
+                self.outline = Outline.on_the_way(ahead[0], self.goal.accuracy, problem)
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
         grading = self._grading(problem.order, self.growth, coarsest)
         self.eased = grading.eased is not None
@@ -331,7 +334,8 @@ class _Refinement:
         sizes = dict.fromkeys(points, self.size * a / coarsest)
         at_kinks = np.clip(estimate.kink_sizes(solution, self.goal.end_error * BARS["q1"]), self.size, None)
         goal, eased = self.goal, goals.eased(solution, self.problem, order, growth)
-        grading = Grading(contact, sizes, growth / coarsest, None, goal.facet_error, goal.corner_error, eased)
+        outline = self.outline
+        grading = Grading(contact, sizes, growth / coarsest, None, outline.facet_error, outline.corner_error, eased)
 
         def refine(point: float, size: float, slack: float = 1.0) -> None:
             """Elements of the ``size``, in half-widths, at a ``point`` where they are larger than ``slack`` times."""
@@ -412,9 +416,8 @@ class _Refinement:
 
     def _errors_of_ends(self, at_ends: Array, at_kinks: Array) -> dict[str, float]:
         """Errors due to elements of given sizes at ends and kinks, to round faces and to corners."""
-        solution, goal = self.solution, self.goal
-        found = estimate.end_errors(solution, at_ends, gaps(solution, self.problem), at_kinks)
-        return {key: error + goal.chords.get(key, 0.0) + goal.tilts.get(key, 0.0) for key, error in found.items()}
+        found = estimate.end_errors(self.solution, at_ends, gaps(self.solution, self.problem), at_kinks)
+        return {key: error + self.outline.left.get(key, 0.0) for key, error in found.items()}
 
     def _estimate_together(self) -> dict[str, float]:
         """Solve once more with elements of the neighbouring order and add the errors away from the ends to ``errors``.

@@ -63,6 +63,32 @@ _NO_GAP = 1e-100  # accuracy: distance of zone ends that coincide: element sizes
 _REACHED = 1.01  # cost: element sizes within this factor of the goal count as having reached it
 
 
+class Outline(NamedTuple):
+    """Errors of a mesh at round faces and corners: ``facet_error`` and ``corner_error`` as for
+    :class:`partialslip_fem.bodies.Grading`, and the errors that these leave, by key."""
+
+    facet_error: float
+    corner_error: float
+    left: Mapping[str, float]
+
+    @classmethod
+    def at(cls, accuracy: float, problem: Problem) -> "Outline":
+        """What ``accuracy`` requires in ``problem``."""
+        corner_error = min(_CORNER_ERROR * accuracy, LOOSEST)
+        tilting = any(part.extent for part in problem.parts)
+        facet_error = _FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0
+        left = {
+            key: _TILTS.get(key, 0.0) * corner_error * tilting + _OF_FACETS.get(key, 0.0) * facet_error
+            for key in _TILTS | _OF_FACETS
+        }
+        return cls(facet_error, corner_error, left)
+
+    @classmethod
+    def on_the_way(cls, mesh: "NextMesh", accuracy: float, problem: Problem) -> "Outline":
+        """The same on a ``mesh`` on the way to ``accuracy``: as good as the mesh is away from the ends of zones."""
+        return cls.at(max(_KNOWN * mesh.size / mesh.finer / (_AWAY_SHARE * AIM), accuracy), problem)
+
+
 @dataclass(frozen=True)
 class Goal:
     """What one ``accuracy`` requires of the mesh and of the estimated errors.
@@ -76,36 +102,25 @@ class Goal:
         Largest error due to the elements at the ends.
     growth : float
         Growth of the elements for which the error away from the ends is small enough.
-    facet_error, corner_error : float
-        As for :class:`partialslip_fem.bodies.Grading`.
-    tilts, chords : dict of float
-        Errors due to the corners and to round faces, by key.
+    outline : Outline
+        What becomes of round faces and corners.
     """
 
     accuracy: float
     bar: float
     end_error: float
     growth: float
-    facet_error: float
-    corner_error: float
-    tilts: dict[str, float]
-    chords: dict[str, float]
+    outline: "Outline"
 
     @classmethod
     def at(cls, accuracy: float, problem: Problem) -> "Goal":
         """The goal for ``accuracy`` in ``problem``."""
-        corner_error = min(_CORNER_ERROR * accuracy, LOOSEST)
-        tilting = any(part.extent for part in problem.parts)
-        facet_error = _FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0
         return cls(
             accuracy=accuracy,
             bar=BAR * accuracy,
             end_error=_END_SHARE * AIM * accuracy,
             growth=growth_at(accuracy, problem.order),
-            facet_error=facet_error,
-            corner_error=corner_error,
-            tilts={key: share * corner_error * tilting for key, share in _TILTS.items()},
-            chords={key: share * facet_error for key, share in _OF_FACETS.items()},
+            outline=Outline.at(accuracy, problem),
         )
 
     def element_size(self, solution: MeshSolution, problem: Problem) -> float:

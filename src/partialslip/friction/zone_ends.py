@@ -13,7 +13,8 @@ distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth.
 
 An end that came back into a strip of such nodes is fitted to this strip alone: at its other side q has a kink. Where
 the strip is narrow, the end lies between the last node that sticks and the first one that slips. The strip may be
-narrower than the distance of two nodes: then no node lies in it, but the first one that slips had stuck again before.
+narrower than the distance of two nodes: then no node lies in it, but the first one beyond had stuck again before it
+slips, if it slips at all.
 """
 
 import itertools
@@ -134,7 +135,8 @@ def read_stick_zone(
             continue
         count = _slipped(changed, inside)
         few = count > 0 and _vertices(x[inside[[0, count - 1]]], vertices) < _VERTICES
-        none = stuck is not None and bool(np.isnan(changed[inside[0]]) and stuck[beyond] < changed[beyond])
+        again = stuck is not None and bool(np.isfinite(stuck[beyond]) and not stuck[beyond] >= changed[beyond])
+        none = again and bool(np.isnan(changed[inside[0]]))
         if few or none:
             ends[side] = float(x[inside[0]] + x[beyond]) / 2
             apart = inside[count] if 0 < count <= _RUN else beyond
