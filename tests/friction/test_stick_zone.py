@@ -218,3 +218,23 @@ def test_an_end_beside_nodes_with_unsteady_room_has_moved_outwards(monkeypatch):
     wrong = read_again()
     assert not wrong.moved[1]
     assert abs(wrong.right - 0.52) > 0.01
+
+
+@pytest.mark.parametrize("together", [1, 6])
+def test_an_end_beside_nodes_that_stuck_at_once_is_where_the_loads_tell(together):
+    """The room ends at 0.507. Nodes further in tell by when they stuck that the end has come to 0.52; the last ones
+    stuck ``together``."""
+    some = -np.diff(np.clip(0.507 - VERTICES, 0, None) ** 2.5 * (VERTICES > -0.31))
+    inside = np.flatnonzero(some > 0)
+    changed = np.full(len(X), 0.2)
+    changed[inside] = 1 - (0.52 - X[inside]) / 2
+    changed[inside[-together:]] = changed[inside[-together:]].mean()
+    zone = read_stick_zone(X, BOUND, 2 * BOUND - some, VERTICES, lambda forces: forces, changed)
+    assert zone.moved[1]
+    if together == 1:
+        assert zone.right == pytest.approx(0.507, abs=2e-3)
+        assert zone.strips[1] == 0
+    else:
+        assert zone.right == zone.caught[1]
+        assert zone.right == pytest.approx(0.52, abs=0.02)
+        assert zone.strips[1] == pytest.approx(zone.right - 0.507, abs=2e-3)

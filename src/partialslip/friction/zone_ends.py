@@ -9,7 +9,8 @@ The fit needs a smooth function. Cells grow away from the end, so its vertices m
 in the stick zone. A second fit, to fewer vertices, tells by how much that matters.
 
 Where the stick zone moves over nodes that have slipped, they stick again, and 2 f p - |dq| falls towards the end like
-distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth.
+distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth. The loads at which these nodes stuck
+again tell the end, too: it is read from them where many stuck at once.
 
 An end that came back into a strip of such nodes is fitted to this strip alone: at its other side q has a kink. Where
 the strip is narrow, the end lies between the last node that sticks and the first one that slips. The strip may be
@@ -50,9 +51,9 @@ class StickInterval:
     as the loads tell at which the nodes beside them stuck again; nan where no nodes did. ``strips`` are lengths
     beside the ends over which so few nodes slipped before that the end is read as if none had, or over which there is
     hardly any room up to the bound; where more nodes slipped, but too few for a fit, or where none did although the end
-    had turned round, the distance of the nodes between which the end lies; where nodes beside an end that moved have
-    room that counts as none, the distance of both readings of the end. ``fits`` are the distances between the ends that
-    many and few vertices of the mesh tell: errors of the fit."""
+    had turned round, the distance of the nodes between which the end lies; where the room beside an end that moved does
+    not tell it, the distance of both readings. ``fits`` are the distances between the ends that many and few vertices
+    of the mesh tell: errors of the fit."""
 
     left: float
     right: float
@@ -115,11 +116,8 @@ def read_stick_zone(
     )
     fits = abs(left - near_left), abs(right - near_right)
     if changed is not None:  # beside a point where an end turned round, few vertices are left to the fit
-        away = [int(power == _ROOT) for power in powers]
-        low, high = x[np.clip([first - 1 - away[0], first + away[0]], 0, len(x) - 1)]
-        left = float(np.clip(left, low, high))
-        low, high = x[np.clip([last - 1 - away[1], last + away[1]], 0, len(x) - 1)]
-        right = float(np.clip(right, low, high))
+        left = float(np.clip(left, *x[np.clip([first - 2, first + 1], 0, len(x) - 1)]))
+        right = float(np.clip(right, *x[np.clip([last - 2, last + 1], 0, len(x) - 1)]))
     moved = powers[0] != _ROOT, powers[1] != _ROOT
     if changed is None:
         return StickInterval(left, max(right, left), signs, moved, fits=fits)
@@ -130,8 +128,11 @@ def read_stick_zone(
         if not 0 <= beyond < len(x):
             continue
         if moved[side]:
-            if still[beyond]:  # room that counts as none hides where the end is
-                strips[side] = float(np.fmax(strips[side], abs(caught[side] - ends[side])))
+            together = np.count_nonzero(changed[inside] == changed[inside[0]]) >= _RUN
+            if (still[beyond] or together or fits[side] == 0) and np.isfinite(caught[side]):
+                strips[side] = max(strips[side], abs(caught[side] - ends[side]))
+                if together and not still[beyond]:  # nodes whose room counts as none tell of an end that goes back
+                    ends[side] = caught[side]
             continue
         count = _slipped(changed, inside)
         few = count > 0 and _vertices(x[inside[[0, count - 1]]], vertices) < _VERTICES
