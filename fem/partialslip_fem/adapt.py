@@ -417,7 +417,7 @@ class _Refinement:
     def _errors_of_ends(self, at_ends: Array, at_kinks: Array) -> dict[str, float]:
         """Errors due to elements of given sizes at ends and kinks, to round faces and to corners."""
         found = estimate.end_errors(self.solution, at_ends, gaps(self.solution, self.problem), at_kinks)
-        return {key: error + self.outline.left.get(key, 0.0) for key, error in found.items()}
+        return {key: error + self.outline.errors.get(key, 0.0) for key, error in found.items()}
 
     def _estimate_together(self) -> dict[str, float]:
         """Solve once more with elements of the neighbouring order and add the errors away from the ends to ``errors``.

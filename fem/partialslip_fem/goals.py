@@ -65,11 +65,11 @@ _REACHED = 1.01  # cost: element sizes within this factor of the goal count as h
 
 class Outline(NamedTuple):
     """Errors of a mesh at round faces and corners: ``facet_error`` and ``corner_error`` as for
-    :class:`partialslip_fem.bodies.Grading`, and the errors that these leave, by key."""
+    :class:`partialslip_fem.bodies.Grading`, and the ``errors`` at the contact that these leave, by key."""
 
     facet_error: float
     corner_error: float
-    left: Mapping[str, float]
+    errors: Mapping[str, float]
 
     @classmethod
     def at(cls, accuracy: float, problem: Problem) -> "Outline":
@@ -77,11 +77,11 @@ class Outline(NamedTuple):
         corner_error = min(_CORNER_ERROR * accuracy, LOOSEST)
         tilting = any(part.extent for part in problem.parts)
         facet_error = _FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0
-        left = {
+        errors = {
             key: _TILTS.get(key, 0.0) * corner_error * tilting + _OF_FACETS.get(key, 0.0) * facet_error
             for key in _TILTS | _OF_FACETS
         }
-        return cls(facet_error, corner_error, left)
+        return cls(facet_error, corner_error, errors)
 
     @classmethod
     def on_the_way(cls, mesh: "NextMesh", accuracy: float, problem: Problem) -> "Outline":
@@ -110,7 +110,7 @@ class Goal:
     bar: float
     end_error: float
     growth: float
-    outline: "Outline"
+    outline: Outline
 
     @classmethod
     def at(cls, accuracy: float, problem: Problem) -> "Goal":

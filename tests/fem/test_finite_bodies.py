@@ -1,5 +1,7 @@
 """Bodies of a size: their shapes, what holds them, a tension that is a load; what is known of them in closed form."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -239,6 +241,20 @@ def test_steep_pads_are_meshed():
     R = 1.0
     mesh = block(0.9, (-0.02, 0.02), {0.0: 0.002}, 0.7, 0.63, face=lambda x: R - np.sqrt(R**2 - x**2), facets=0.2)
     assert area(mesh) > 0
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
+def test_a_mesh_on_the_way_is_as_good_at_round_faces_as_away_from_the_ends(accuracy):
+    """Its errors count. The last mesh, and one that comes near it, are what the accuracy asks for."""
+    problem = SimpleNamespace(parts=[SimpleNamespace(extent=(1.0, 1.0), face=np.square)])
+    goal = goals.Outline.at(accuracy, problem)
+    away, *_, last = goals.course(0.1, 10.0, 1e-6, 0.05, 4)
+    way = goals.Outline.on_the_way(away, accuracy, problem)
+    assert way.facet_error > 3 * goal.facet_error
+    assert goals.LOOSEST >= way.corner_error >= goal.corner_error
+    assert way.errors["m"] == pytest.approx(way.facet_error)
+    assert way.errors["right"] > goals._OF_FACETS["right"] * way.facet_error  # corners, too
+    assert goals.Outline.on_the_way(last, 1.0, problem) == goals.Outline.at(1.0, problem)
 
 
 @pytest.mark.slow
