@@ -244,9 +244,8 @@ class _Refinement:
             ahead = course(self.size, self.finer, self.size_goal, least, problem.order)
         if self.solution.enclosed:
             self.size, self.growth, self.finer = ahead[0]
-            self.outline = self.goal.outline
-            if not size_reached(self.size, self.size_goal):
-                self.outline = Outline.on_the_way(ahead[0], self.goal.accuracy, problem)
+            arrives = size_reached(self.size, self.size_goal)
+            self.outline = Outline.at(self.goal.accuracy, problem, None if arrives else ahead[0])
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
         grading = self._grading(problem.order, self.growth, coarsest)
         self.eased = grading.eased is not None

@@ -72,21 +72,18 @@ class Outline(NamedTuple):
     errors: Mapping[str, float]
 
     @classmethod
-    def at(cls, accuracy: float, problem: Problem) -> "Outline":
-        """What ``accuracy`` requires in ``problem``."""
+    def at(cls, accuracy: float, problem: Problem, mesh: "NextMesh | None" = None) -> "Outline":
+        """What ``accuracy`` requires in ``problem``; on a ``mesh`` on the way to it, chords as good as the mesh is away
+        from the ends of zones."""
+        found = max(_KNOWN * mesh.size / mesh.finer / (_AWAY_SHARE * AIM), accuracy) if mesh else accuracy
         corner_error = min(_CORNER_ERROR * accuracy, LOOSEST)
         tilting = any(part.extent for part in problem.parts)
-        facet_error = _FACET_SHARE * accuracy if any(part.face for part in problem.parts) else 0.0
+        facet_error = _FACET_SHARE * found if any(part.face for part in problem.parts) else 0.0
         errors = {
             key: _TILTS.get(key, 0.0) * corner_error * tilting + _OF_FACETS.get(key, 0.0) * facet_error
             for key in _TILTS | _OF_FACETS
         }
         return cls(facet_error, corner_error, errors)
-
-    @classmethod
-    def on_the_way(cls, mesh: "NextMesh", accuracy: float, problem: Problem) -> "Outline":
-        """The same on a ``mesh`` on the way to ``accuracy``: as good as the mesh is away from the ends of zones."""
-        return cls.at(max(_KNOWN * mesh.size / mesh.finer / (_AWAY_SHARE * AIM), accuracy), problem)
 
 
 @dataclass(frozen=True)
