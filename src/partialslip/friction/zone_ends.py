@@ -128,11 +128,8 @@ def read_stick_zone(
         if not 0 <= beyond < len(x):
             continue
         if moved[side]:
-            together = np.count_nonzero(changed[inside] == changed[inside[0]]) >= _RUN
-            if (still[beyond] or together or fits[side] == 0) and np.isfinite(caught[side]):
-                strips[side] = max(strips[side], abs(caught[side] - ends[side]))
-                if together and not still[beyond]:  # nodes whose room counts as none tell of an end that goes back
-                    ends[side] = caught[side]
+            ends[side], unsure = _moved(x, changed, inside, ends[side], caught[side], fits[side], bool(still[beyond]))
+            strips[side] = max(strips[side], unsure)
             continue
         count = _slipped(changed, inside)
         few = count > 0 and _vertices(x[inside[[0, count - 1]]], vertices) < _VERTICES
@@ -144,6 +141,25 @@ def read_stick_zone(
             strips[side] = max(strips[side], abs(float(x[apart] - x[inside[0]])))
     left, right = ends
     return StickInterval(left, max(right, left), signs, moved, caught, (strips[0], strips[1]), fits)
+
+
+def _moved(
+    x: Array, changed: Array, inside: Indices, read: float, caught: float, fit: float, hidden: bool
+) -> tuple[float, float]:
+    """An end of the stick zone that has moved outwards, and what is not known of it: the end that the room tells,
+    ``read`` by a ``fit`` of this error, or the one that was ``caught``, which tells it where many nodes ``inside``
+    stuck again at once. ``hidden``: room that counts as none hides the end."""
+    apart = abs(caught - read)
+    if not math.isfinite(apart):
+        return read, 0.0
+    if hidden:
+        return read, apart
+    together = int(np.count_nonzero(changed[inside] == changed[inside[0]]))
+    reach = x[inside[: max(together, _RUN)]]
+    near = abs(float(reach[-1] - reach[0]))  # readings farther apart than few nodes tell no more
+    if together >= _RUN:
+        return caught if apart <= near else read, min(apart, near)
+    return read, min(apart, near) if fit == 0 else 0.0
 
 
 def _slipped(changed: Array | None, inside: Indices) -> int:
