@@ -29,9 +29,9 @@ OWN = {  # accuracy: of the boundary elements, besides their cells
 
 
 def main(numbers: list[str]) -> None:
+    """Freeze the problems with these ``numbers``, all by default."""
     if unknown := set(numbers) - texts().keys():
         sys.exit(f"{', '.join(sorted(unknown))}: must be numbers of problems, or --doubted alone")
-    """Freeze the problems with these ``numbers``, all by default."""
     known = read_frozen()
     targets, regimes = dict(known.targets), dict(known.regimes)
     for number, text in texts().items():
