@@ -8,12 +8,13 @@ Estimates of similar uncertainty elsewhere increase the uncertainty of the end: 
 spreads an end over some length.
 """
 
-from itertools import pairwise
+from collections.abc import Sequence
+from itertools import chain, islice, pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices
 
 _POINTS = (4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)  # accuracy: of the windows that are tried
 _MANY = 60  # accuracy: most points of a fit; longer windows are thinned out
@@ -37,6 +38,7 @@ _DRIFTS = 1e-6  # accuracy: of the largest value: least one of a zone that has d
 _CLEAR = 10.0  # accuracy: times the noise: least value beyond the end of a square root that a few points tell
 # accuracy: times the length over which the contact's ends are spread: shortest drift that smoothing does not mimic
 _BLURS = 5.0
+_LEADS = 1e-30  # accuracy: of the largest coefficient of a polynomial: least first one, whose root is far away
 FEWEST = 3  # accuracy: points beyond the end of a square root that show a drift
 NOISE_FACTOR = 4.0  # accuracy: standard deviations of the noise: smaller values count as noise
 ZERO_LEVEL = 1e-9  # accuracy: of the largest value: smaller values count as zero
@@ -147,12 +149,13 @@ def _end(x: Array, values: Array, last: int, first: int, cells: bool, slack: Arr
     beyond = x[last + 1] if last + 1 < len(x) else x[last] + 2 * spacing
     outermost = max(x[-1], beyond) + (beyond - x[last]) / 2
     reach = min(last - int(_PART * (last - first)), max(last - _FEW, first))
-    levels: list[list[list[_Root | None]]] = []
+    windows: list[list[Indices]] = []
     for skipped in reversed(_SKIPPED):
         at = last - int(cells) - skipped
         counts = [count for count in _POINTS if at - count + 1 >= reach and _NEAREST * count >= skipped]
-        windows = [at - np.arange(0, count, -(-count // _MANY))[::-1] for count in counts]
-        levels.append([_roots(x[w], values[w], slack[w], x[at] - spacing, outermost) for w in windows])
+        windows.append([at - np.arange(0, count, -(-count // _MANY))[::-1] for count in counts])
+    found_on = iter(_roots(x, values, slack, list(chain.from_iterable(windows)), outermost, spacing))
+    levels = [list(islice(found_on, len(level))) for level in windows]
     every = [root for level in levels for roots in level for root in roots if root]
     # only the highest degree: the scatter about lower degrees includes curvature
     close = [roots[-1] for level in levels[-_NEAR:] for roots in level if roots]
@@ -273,39 +276,65 @@ def _estimates(roots: list[_Root | None], floor: float, steepest: float) -> list
     return found
 
 
-def _roots(x: Array, y: Array, slack: Array, near: float, far: float) -> list[_Root | None]:
-    """Roots between ``near`` and ``far`` of polynomials through y^2, by degree.
+def _roots(
+    x: Array, y: Array, slack: Array, windows: Sequence[Indices], far: float, spacing: float
+) -> list[list[_Root | None]]:
+    """Roots of polynomials through y^2 on each of the ``windows``, by degree, between the last point of the window less
+    the ``spacing`` and ``far``.
 
-    The error of ``y`` is the same at all points, so that the error of y^2 is proportional to y.
+    The error of ``y`` is the same at all points, so that the error of y^2 is proportional to y. Shorter windows are
+    filled up with points of no weight.
     """
-    scale = x[-1] - x[0]
-    t, size = (x - x[-1]) / scale, np.abs(y)
-    weights = 1 / np.maximum(size, 0.03 * size.max())
-    right = np.column_stack([y * size, 2 * size * slack]) * weights[:, None]
-    found: list[_Root | None] = []
-    for degree in range(1, min(3, len(x) - 2) + 1):
-        A = np.vander(t, degree + 1) * weights[:, None]
+    found: list[list[_Root | None]] = [[] for _ in windows]
+    if not windows:
+        return found
+    counts = np.array([len(window) for window in windows])
+    places = np.arange(counts.max()) - (counts.max() - counts)[:, None]
+    points = np.concatenate(windows)[np.maximum(places, 0) + (np.cumsum(counts) - counts)[:, None]]
+    end, highest = x[points[:, -1]], np.where(places >= 0, np.abs(y[points]), 0.0).max(axis=1)
+    scale = end - x[points[:, 0]]
+    t, size = (x[points] - end[:, None]) / scale[:, None], np.abs(y[points])
+    weights = (places >= 0) / np.maximum(size, 0.03 * highest[:, None])
+    right = np.stack([y[points] * size, 2 * size * slack[points]], axis=-1) * weights[..., None]
+    rising, kept = np.stack([t**3, t**2, t, np.ones_like(t)], axis=-1) * weights[..., None], np.arange(len(windows))
+    for degree in (1, 2, 3):
+        kept = kept[counts[kept] > degree + 1]
+        A = rising[kept, :, 3 - degree :]
         Q, R = np.linalg.qr(A)
-        if np.abs(np.diag(R)).min() <= 1e-13 * np.abs(R).max():
+        full = np.abs(R.diagonal(axis1=1, axis2=2)).min(axis=1) > 1e-13 * np.abs(R).max(axis=(1, 2))
+        kept, A, Q, R = kept[full], A[full], Q[full], R[full]
+        if not len(kept):
             return found
         inverse = np.linalg.inv(R)
-        solution, shift = (inverse @ (Q.T @ right)).T
-        roots = np.roots(solution)
-        roots = roots[np.abs(roots.imag) < 1e-12].real
-        roots = roots[(roots > (near - x[-1]) / scale) & (roots < (far - x[-1]) / scale)]
-        slope = 0.0
-        if len(roots):
-            root = float(roots[np.abs(roots).argmin()])
-            slope = float(np.polyval(np.polyder(solution), root))
-        if not slope:
-            found.append(None)
-            continue
-        residual, freedom = A @ solution - right[:, 0], len(x) - degree - 1
-        scatter = float(residual @ residual) / freedom + (1e-12 * float(size.max())) ** 2  # at least rounding
-        powers, per = root ** np.arange(degree, -1, -1), scale / abs(slope)
+        solution, shift = np.moveaxis(inverse @ (Q.mT @ right[kept]), -1, 0)
+        root = _nearest_root(solution, -spacing / scale[kept], (far - end[kept]) / scale[kept])
+        powers = np.where(np.isnan(root), 0.0, root)[:, None] ** np.arange(degree, -1, -1)
+        slope = (solution[:, :-1] * np.arange(degree, 0, -1) * powers[:, 1:]).sum(axis=1)
+        freedom = counts[kept] - degree - 1
+        residual = (A @ solution[..., None])[..., 0] - right[kept, :, 0]
+        scatter = (residual**2).sum(axis=1) / freedom + (1e-12 * highest[kept]) ** 2  # at least rounding
+        known = np.isfinite(root) & (slope != 0)
+        per = scale[kept] / np.where(known, np.abs(slope), 1.0)
         few = 1 + 2 / freedom  # few degrees of freedom underestimate the scatter
-        gain, moved = few * per * np.linalg.norm(powers @ inverse), per * abs(powers @ shift)
-        found.append(
-            _Root(x[-1] + root * scale, len(x), float(size.max()), slope / scale, scatter, float(gain), float(moved))
-        )
+        gain = few * per * np.linalg.norm((powers[:, None] @ inverse)[:, 0], axis=1)
+        moved = per * np.abs((powers * shift).sum(axis=1))
+        at = end[kept] + root * scale[kept]
+        rows = np.column_stack([at, counts[kept], highest[kept], slope / scale[kept], scatter, gain, moved])
+        for window, good, row in zip(kept.tolist(), known.tolist(), rows.tolist(), strict=True):
+            found[window].append(_Root(row[0], int(row[1]), *row[2:]) if good else None)
     return found
+
+
+def _nearest_root(polynomials: Array, near: Array, far: Array) -> Array:
+    """The real root nearest to 0 of each of the ``polynomials`` (k, d + 1), from the highest power on, (k,); nan where
+    none lies between ``near`` and ``far``, (k,) each."""
+    count, degree = len(polynomials), polynomials.shape[1] - 1
+    leading, least = polynomials[:, :1], _LEADS * np.abs(polynomials).max(axis=1, keepdims=True)
+    companion = np.zeros((count, degree, degree))
+    companion[:, 1:, :-1] = np.eye(degree - 1)
+    companion[:, 0] = -polynomials[:, 1:] / np.where(np.abs(leading) > least, leading, least)
+    roots = np.linalg.eigvals(companion)
+    inside = (np.abs(roots.imag) < 1e-12) & (roots.real > near[:, None]) & (roots.real < far[:, None])
+    distance = np.where(inside, np.abs(roots.real), np.inf)
+    best = np.take_along_axis(roots.real, distance.argmin(axis=1)[:, None], axis=1)[:, 0]
+    return np.where(inside.any(axis=1), best, np.nan)
