@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 import warnings
 
 import msgspec
@@ -21,9 +22,16 @@ def found():
     return run(load_scene("hertz-large-tension", ["fem.accuracy=1e-2"]), ["exact", "march"], subsurface=True)
 
 
+@pytest.fixture(scope="module")
+def written(found, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("written")
+    write_run(found, folder)
+    return folder
+
+
 @pytest.fixture
-def file(found, tmp_path):
-    write_run(found, tmp_path)
+def file(written, tmp_path):
+    shutil.copytree(written, tmp_path, dirs_exist_ok=True)
     return tmp_path / "results.json"
 
 
