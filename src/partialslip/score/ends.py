@@ -228,11 +228,11 @@ def drifted_right_end(x: Array, values: Array, end: ZoneEnd, last: int, least: f
     height = np.cbrt(values[beyond] / values.max()) ** 2
     t, found = x[beyond] - x[beyond[-1]], []
     for count, degree in ((max(len(t) // 2, 2), 1), (len(t), 2), (len(t), 3)):
-        roots = np.roots(np.polyfit(t[-count:], height[-count:], min(degree, count - 1)))
-        roots = roots[(np.abs(roots.imag) < 1e-12) & (roots.real > t[-1])].real
-        if not len(roots):
+        fitted = np.polyfit(t[-count:], height[-count:], min(degree, count - 1))
+        root = float(_nearest_root(fitted[None], 0.0, np.inf)[0])
+        if np.isnan(root):
             return unsure
-        found.append(float(x[beyond[-1]] + roots.min()))
+        found.append(float(x[beyond[-1]]) + root)
     uncertainty = _SAFE * float(np.ptp(found))
     return ZoneEnd(found[1], uncertainty) if uncertainty < end.spread else unsure
 
@@ -325,16 +325,17 @@ def _roots(
     return found
 
 
-def _nearest_root(polynomials: Array, near: Array, far: Array) -> Array:
+def _nearest_root(polynomials: Array, near: Array | float, far: Array | float) -> Array:
     """The real root nearest to 0 of each of the ``polynomials`` (k, d + 1), from the highest power on, (k,); nan where
-    none lies between ``near`` and ``far``, (k,) each."""
+    none lies between ``near`` and ``far``, numbers or (k,)."""
     count, degree = len(polynomials), polynomials.shape[1] - 1
     leading, least = polynomials[:, :1], _LEADS * np.abs(polynomials).max(axis=1, keepdims=True)
     companion = np.zeros((count, degree, degree))
     companion[:, 1:, :-1] = np.eye(degree - 1)
     companion[:, 0] = -polynomials[:, 1:] / np.where(np.abs(leading) > least, leading, least)
     roots = np.linalg.eigvals(companion)
-    inside = (np.abs(roots.imag) < 1e-12) & (roots.real > near[:, None]) & (roots.real < far[:, None])
+    low, high = np.reshape(near, (-1, 1)), np.reshape(far, (-1, 1))
+    inside = (np.abs(roots.imag) < 1e-12) & (roots.real > low) & (roots.real < high)
     distance = np.where(inside, np.abs(roots.real), np.inf)
     best = np.take_along_axis(roots.real, distance.argmin(axis=1)[:, None], axis=1)[:, 0]
     return np.where(inside.any(axis=1), best, np.nan)
