@@ -130,6 +130,7 @@ class _Refinement:
         self.block_width = 0.0  # width of the blocks of the present mesh
         self.errors, self.end_errors = dict[str, float](), dict[str, float]()
         self.error_at_ends = np.inf  # error due to the elements at the ends of zones alone, not at kinks
+        self.error_at_vertices = np.inf  # the same if the ends were at vertices
         self.largest_end_element = np.inf
         self.error, self.error_before, self.calmer = np.inf, np.inf, 1.0
         self.step_errors: Mapping[str, float] | None = None  # None until the steps are chosen
@@ -282,8 +283,10 @@ class _Refinement:
             beside = np.abs(solution.zone_ends[:, None] - np.array([*grading.sizes])).min(axis=1)
             at_ends = at_ends * (1 + beside / (self.size * a))
         self.largest_end_element = grading.at(solution.zone_ends).max() * coarsest / a
-        self.errors = self.end_errors = self._errors_of_ends(at_ends, at_kinks)
-        self.error_at_ends = worst(self._errors_of_ends(at_ends, 0 * at_kinks))
+        inside = solution.inside(solution.zone_ends)
+        self.errors = self.end_errors = self._errors_of_ends(at_ends, inside, at_kinks)
+        self.error_at_ends = worst(self._errors_of_ends(at_ends, inside, 0 * at_kinks))
+        self.error_at_vertices = worst(self._errors_of_ends(at_ends, 0 * inside, 0 * at_kinks))
 
     def estimate_errors(self) -> None:
         """Estimate the error away from the ends, if the error of the ends is small enough or no smaller one is to
@@ -318,7 +321,10 @@ class _Refinement:
                 f"reaches the ends of {self.cuts} contact lines"
             )
         if size_reached(self.size, self.size_goal):
-            self.finer = min(max(3 * self.error_at_ends / self.bar, 1.0), goals.FINER)
+            # an end inside an element needs a vertex, not smaller elements; these where it had one that did not help
+            missed = self.finer == 1 and self.error_at_ends > self.bar
+            error = self.error_at_ends if missed else self.error_at_vertices
+            self.finer = min(max(3 * error / self.bar, 1.0), goals.FINER)
         if self.error < np.inf:
             self.error_before, self.least = self.error, self.least * self.calmer
 
@@ -413,9 +419,10 @@ class _Refinement:
         mesh, and to check these steps."""
         return self.expense.allows(_CHECKED * times * self.march_s, self._overdraft)
 
-    def _errors_of_ends(self, at_ends: Array, at_kinks: Array) -> dict[str, float]:
-        """Errors due to elements of given sizes at ends and kinks, to round faces and to corners."""
-        found = estimate.end_errors(self.solution, at_ends, gaps(self.solution, self.problem), at_kinks)
+    def _errors_of_ends(self, at_ends: Array, inside: Array, at_kinks: Array) -> dict[str, float]:
+        """Errors due to elements of given sizes at ends, ``inside`` which these lie, and at kinks, to round faces and
+        to corners."""
+        found = estimate.end_errors(self.solution, at_ends, inside, gaps(self.solution, self.problem), at_kinks)
         return {key: error + self.outline.errors.get(key, 0.0) for key, error in found.items()}
 
     def _estimate_together(self) -> dict[str, float]:

@@ -18,7 +18,9 @@ Where it turned round q has a kink, which elements of both orders miss alike.
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
 the order: like those of q at kinks, they are a part of the change.
 
-At an end tractions are square roots. There the error depends on the element size, not on the order. It also depends on
+At an end tractions are square roots. There the error depends on the element size, not on the order, and on where in
+its element the end lies: both orders miss one inside an element alike, and the same mesh with a vertex at the end found
+is several times better (:attr:`partialslip_fem.mesh_solution.MeshSolution.inside`). It also depends on
 the distance to the next end or kink of the profile, as ends of the stick zone are fitted to some elements next to them.
 Where these elements grow fast, they reach as far as the kink: ends are not known better than a fit to fewer elements
 agrees (:attr:`partialslip.friction.zone_ends.StickInterval.fits`).
@@ -57,8 +59,10 @@ _OF_TURNED, _MOST = 0.2, 2.0
 _NARROW = 0.1  # accuracy: of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # accuracy: Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
-# Error of an end of the contact, in the mean size of the element that the end lies in and its neighbours, by order.
-AT_END = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 6: 0.001}
+# Error of an end of the contact, in the mean size of the element that the end lies in and its neighbours, by order:
+# at a vertex, and inside an element, at least a fifth of it from both vertices.
+_AT_VERTEX = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 6: 0.001}
+_INSIDE, _BESIDE = {1: 0.1, 2: 0.03, 3: 0.006, 4: 0.007, 6: 0.002}, 0.2
 # Factors of (element size / gap)^2 in the error of an end of the stick zone: gap to the other end of the stick zone,
 # and to the nearest other end or kink.
 _FIT = np.array([8.0, 2.0])
@@ -146,7 +150,7 @@ def _within_elements(solution: MeshSolution, breaks: Sequence[float]) -> bool:
     return bool(((points > solution.left) & (points < solution.right)).any())
 
 
-def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Array) -> dict[str, float]:
+def end_errors(solution: MeshSolution, sizes: Array, inside: Array, gaps: Array, at_kinks: Array) -> dict[str, float]:
     """Errors due to the elements at the ends, by key as for :func:`smooth_errors`.
 
     Parameters
@@ -154,12 +158,16 @@ def end_errors(solution: MeshSolution, sizes: Array, gaps: Array, at_kinks: Arra
     solution : MeshSolution
     sizes : (k,) array
         Sizes of the elements at ``solution.zone_ends``, in contact half-widths.
+    inside : (k,) array
+        How far inside these elements the ends lie, as from :meth:`MeshSolution.inside`: next to a vertex, which a mesh
+        graded to it has at an end that was known, their errors are a third or less.
     gaps : (2, k) array
         As from :func:`partialslip_fem.goals.gaps`.
     at_kinks : (j,) array
         Sizes of the elements at ``solution.kinks``, in contact half-widths.
     """
-    off = AT_END[solution.lower.order] * sizes
+    order = solution.lower.order
+    off = (_AT_VERTEX[order] + (_INSIDE[order] - _AT_VERTEX[order]) * np.minimum(inside / _BESIDE, 1.0)) * sizes
     if solution.dissimilar and solution.stick:
         beside = np.abs(solution.zone_ends[2:4] - solution.zone_ends[:2]) / solution.half_width
         off[:2] += np.where(beside > sizes[:2], _SLIPPING, _STUCK) * sizes[:2]
@@ -299,10 +307,8 @@ def _norm(traction: PPoly) -> float:
 def _kink_errors(solution: MeshSolution, sizes: Array) -> list[float]:
     """L2 errors of (q2 - q1)/2, q1 and q2 due to the elements of ``sizes`` (j,) at the kinks of ``solution``. Where an
     end turned round, the kink is smoothed over as far as the nearest vertex."""
-    vertices, kinks = solution.lower.x[:: solution.lower.order], np.array(solution.kinks)
-    cells = np.clip(np.searchsorted(vertices, kinks), 1, len(vertices) - 1)
-    share = (kinks - vertices[cells - 1]) / (vertices[cells] - vertices[cells - 1])
-    parts = np.where(_turned(solution), _TURNED_KINK * np.minimum(share, 1 - share), _KINK)
+    inside = solution.inside(np.array(solution.kinks))
+    parts = np.where(_turned(solution), _TURNED_KINK * inside, _KINK)
     return np.hypot.reduce(parts * _kink_strengths(solution) * sizes, axis=1).tolist()
 
 

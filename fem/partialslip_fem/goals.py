@@ -227,7 +227,8 @@ def worst(errors: Mapping[str, float]) -> float:
     return max((error / BARS[key] for key, error in errors.items()), default=0.0)
 
 
-def _far_apart(solution: MeshSolution) -> tuple[Array, Array, Array]:
-    """Arguments of ``end_errors`` for elements as large as the contact half-width at ends that are far apart."""
+def _far_apart(solution: MeshSolution) -> tuple[Array, Array, Array, Array]:
+    """Arguments of ``end_errors`` for elements as large as the contact half-width at ends that are far apart and at
+    vertices."""
     count = len(solution.zone_ends)
-    return np.ones(count), np.full((2, count), np.inf), np.zeros(len(solution.kinks))
+    return np.ones(count), np.zeros(count), np.full((2, count), np.inf), np.zeros(len(solution.kinks))

@@ -153,6 +153,14 @@ class MeshSolution:
         cells = np.searchsorted(vertices, points)[:, None] + np.arange(-2, 1)
         return np.diff(vertices)[np.clip(cells, 0, len(vertices) - 2)].mean(axis=1)
 
+    def inside(self, points: Array) -> Array:
+        """Distances of ``points`` (k,) from the nearest vertices, in the elements that they lie in, (k,): 0 to 0.5."""
+        vertices = self.lower.x[:: self.lower.order]
+        after = np.clip(np.searchsorted(vertices, points), 1, len(vertices) - 1)
+        share = (points - vertices[after - 1]) / (vertices[after] - vertices[after - 1])
+        nearest: Array = np.clip(np.minimum(share, 1 - share), 0.0, 0.5)
+        return nearest
+
     @property
     def contact_end_places(self) -> tuple[list[int], list[int]]:
         """Indices in ``zone_ends`` of the left and of the right ends of the contact."""

@@ -1,5 +1,7 @@
 """The estimate against the true error, on scenes of both regimes; the estimate itself never sees the exact solution."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import partialslip
 from partialslip.judge.means import cell_means
 from partialslip.scene.reading import parse_scene
 from partialslip_fem import estimate, goals
+from partialslip_fem.solving import solve_on_meshes
 
 SCENES = [
     ("hertz-small-tension", "load.sigma=[-150e6, 150e6]"),
@@ -149,3 +152,36 @@ def test_a_kink_where_an_end_turned_round_within_an_element_is_seen(monkeypatch)
     assert off < estimate._kink_errors(solution, at_kinks * a)[0] < 20 * off
     monkeypatch.setattr(estimate, "_turned", lambda solution: np.zeros(len(solution.kinks), dtype=bool))
     assert estimate._kink_errors(solution, at_kinks * a)[0] < off
+
+
+@pytest.mark.fault
+def test_the_place_of_an_end_in_its_element_counts(monkeypatch):
+    """The same mesh, stretched so that the end of a Hertz contact moves from a vertex into the element: the error of a
+    grows, and elements of the order below do not see it. Deliberate fault: ends are taken to be at vertices."""
+    solved, true = [], estimate.neighbour
+    monkeypatch.setattr(estimate, "neighbour", lambda *given: solved.append(given) or true(*given))
+    scene = partialslip.load_scene("hertz-shear", ["load.Q=[0, 0]", "fem.accuracy=1e-3"])
+    results = partialslip.run(scene, ["fem", "exact"]).results
+    solution, problem, width, clock = solved[-1]
+    a = results["exact"].a / results["fem"].a * solution.half_width
+    vertices = solution.lower.x[:: solution.lower.order]
+    cell = int(np.argmin(np.abs(vertices - a)))
+    shares, errors = np.array([0.0, 0.2, 0.4]), []
+    for share in shares:
+        stretch = a / (vertices[cell] + share * (vertices[cell + 1] - vertices[cell]))
+        meshes = [replace(each.mesh, points=stretch * each.mesh.points) for each in solution.bodies]
+        moved = solve_on_meshes(meshes, problem, width, clock)
+        ends = moved.zone_ends
+        sizes, inside = moved.element_sizes(ends) / moved.half_width, moved.inside(ends)
+        assert inside == pytest.approx(share, abs=0.03)
+        known = [
+            estimate.end_errors(moved, sizes, each, goals.gaps(moved, problem), np.empty(0))["a"]
+            for each in (inside, 0 * inside)
+        ]
+        other = true(moved, problem, width, clock)
+        smooth = estimate.smooth_errors(moved, other)["a"]
+        errors.append([abs(moved.half_width / a - 1), *(smooth + np.array(known))])
+    off, known, fault = np.transpose(errors)
+    assert (off < known).all()
+    assert off[1] > 2 * off[0]
+    assert (off > fault).any()
