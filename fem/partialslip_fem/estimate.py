@@ -23,7 +23,8 @@ its element the end lies: both orders miss one inside an element alike, and the 
 is several times better (:attr:`partialslip_fem.mesh_solution.MeshSolution.inside`). It also depends on
 the distance to the next end or kink of the profile, as ends of the stick zone are fitted to some elements next to them.
 Where these elements grow fast, they reach as far as the kink: ends are not known better than a fit to fewer elements
-agrees (:attr:`partialslip.friction.zone_ends.StickInterval.fits`).
+agrees (:attr:`partialslip.friction.zone_ends.StickInterval.fits`). Ends of the contact are not, either: under a gap
+that is no parabola p departs from a square root soon (:attr:`partialslip_fem.mesh_solution.MeshSolution.fits`).
 """
 
 import math
@@ -172,9 +173,10 @@ def end_errors(solution: MeshSolution, sizes: Array, inside: Array, gaps: Array,
         beside = np.abs(solution.zone_ends[2:4] - solution.zone_ends[:2]) / solution.half_width
         off[:2] += np.where(beside > sizes[:2], _SLIPPING, _STUCK) * sizes[:2]
     most = float(off.max()) * max(_steepness(solution), 1.0)
-    errors = {"a": float(off[:2].mean()), **{key: most * times for key, times in _TRACTIONS.items()}}
-    first, second = solution.contact_end_places
-    errors |= {"left": float(off[first].max()), "right": float(off[second].max())}
+    read, places = _READ * solution.fits / solution.half_width, solution.contact_end_places
+    lefts, rights = (np.maximum(off[ends], read[side::2]) for side, ends in enumerate(places))
+    errors = {"a": float(lefts[0] + rights[0]) / 2, **{key: most * times for key, times in _TRACTIONS.items()}}
+    errors |= {"left": float(lefts.max()), "right": float(rights.max())}
     if solution.stick:
         fit = np.minimum((_FIT[:, None] * np.minimum(sizes / gaps, 1.0) ** 2).sum(axis=0), _SIDE) * sizes
         if not (solution.history and solution.history.turns):  # otherwise strips and nodes that stuck again tell

@@ -71,6 +71,9 @@ class MeshSolution:
         Which nodes of coupled bodies touch and slip in each step.
     choosing_s : float
         CPU seconds spent on the choice of load steps and on their errors: finer meshes take the same steps.
+    fits : (e,) array
+        Distances between the ends of the contact that many and few vertices of the mesh tell, of the 2 ends at load
+        point 2 and the ``ends_at_1``: errors of the fit.
     """
 
     bodies: tuple[CondensedBody, ...]
@@ -96,6 +99,7 @@ class MeshSolution:
     dissimilar: bool = False
     relative: Relative | None = None
     choosing_s: float = 0.0
+    fits: Array = field(default_factory=lambda: np.zeros(2))
 
     @property
     def slips_when_pressed(self) -> bool:

@@ -18,7 +18,7 @@ from partialslip.friction.normal import Presses
 from partialslip.friction.pressing import PARABOLA, Pressed
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
-from partialslip.friction.zone_ends import within
+from partialslip.friction.zone_ends import NEAREST, VERTICES, within
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
@@ -123,15 +123,21 @@ def solve_contact(
         kept = replace(relative) if all(part.finite for part in problem.parts) else None  # without its factors
         forces = _contact_forces(problem, relative, bodies[0], check, shared, before)
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
-        ends_under = partial(contact_ends_of, line, beta=problem.beta if both else 0.0)
         on_line = partial(_on_line, line, nodes)
-        left, right = ends_under(forces.pressing.x, on_line(history.q2) if history else None)
+
+        def ends_under(p: Array, q: Array | None) -> list[tuple[float, float]]:
+            """Ends of the contact as many vertices of the mesh tell them, and few."""
+            read = partial(contact_ends_of, line, p, q, problem.beta if both else 0.0)
+            return [read(count=count) for count in (VERTICES, NEAREST)]
+
+        (left, right), few = ends_under(forces.pressing.x, on_line(history.q2) if history else None)
         ends_at_1: tuple[float, float] | tuple[()] = ()
+        few_at_1: tuple[float, float] | tuple[()] = ()
         at_first = forces.first
         if history and both and at_first is None:
             at_first = on_line(history.pressures[0])
         if at_first is not None:
-            ends_at_1 = ends_under(at_first, on_line(history.q1) if history else None)
+            ends_at_1, few_at_1 = ends_under(at_first, on_line(history.q1) if history else None)
         growth = growth_when_pressed(forces.pressed, nodes, problem)
         stick = stick_zone_of(line, nodes, history, growth) if history else None
         if stick and growth and forces.pressed:
@@ -159,6 +165,7 @@ def solve_contact(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
             forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
             path_errors, forces.path_moves, both and problem.beta != 0, kept, forces.choosing_s,
+            np.abs(np.subtract([*few, *few_at_1], [left, right, *ends_at_1])),
         )  # fmt: skip
 
 

@@ -19,13 +19,20 @@ _SAME_KINK = 1e-3  # accuracy: of the contact half-width: kinks nearer to each o
 
 
 def contact_ends_of(
-    line: Body, normal: Array, shear: Array | None = None, beta: float = 0.0, rise: float = zone_ends.ROUNDED
+    line: Body,
+    normal: Array,
+    shear: Array | None = None,
+    beta: float = 0.0,
+    rise: float = zone_ends.ROUNDED,
+    count: int = zone_ends.VERTICES,
 ) -> tuple[float, float]:
-    """Ends of the contact under ``normal`` forces and ``shear`` forces (n,) on the nodes of the contact line; ``beta``
-    and ``rise`` as for :func:`partialslip.friction.zone_ends.contact_ends`."""
+    """Ends of the contact under ``normal`` forces and ``shear`` forces (n,) on the nodes of the contact line; ``beta``,
+    ``rise`` and ``count`` as for :func:`partialslip.friction.zone_ends.contact_ends`."""
     tangential = _cell_forces(line, shear) if shear is not None and beta else None
     vertices = line.x[:: line.order]
-    return zone_ends.contact_ends(vertices, _cell_forces(line, normal), line.x[normal > 0], tangential, beta, rise)
+    return zone_ends.contact_ends(
+        vertices, _cell_forces(line, normal), line.x[normal > 0], tangential, beta, rise, count
+    )
 
 
 def resultants_of(line: Body, normal: Array, shear: Array) -> tuple[Array, Array, Array]:

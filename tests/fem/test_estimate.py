@@ -8,7 +8,7 @@ import pytest
 import partialslip
 from partialslip.judge.means import cell_means
 from partialslip.scene.reading import parse_scene
-from partialslip_fem import estimate, goals
+from partialslip_fem import estimate, goals, solving
 from partialslip_fem.solving import solve_on_meshes
 
 SCENES = [
@@ -185,3 +185,36 @@ def test_the_place_of_an_end_in_its_element_counts(monkeypatch):
     assert (off < known).all()
     assert off[1] > 2 * off[0]
     assert (off > fault).any()
+
+
+@pytest.mark.fault
+def test_an_end_of_the_contact_is_read_twice(monkeypatch):
+    """Under a gap like x^6 p departs from a square root soon, so that the fit to five vertices is off; a fit to three
+    tells so. Deliberate fault: both fits are one."""
+    x = np.linspace(0, 1.2783903476731305e-3, 83)
+    scene = parse_scene(
+        {
+            "name": "flat-bottom",
+            "material": {"E": 70e9, "nu": 0.49},
+            "friction": {"f": 0.7818386378617131},
+            "profile": {"kind": "tabulated", "x": x.tolist(), "gap": (1e-6 / 0.02 / 6 * (x / 1e-3) ** 6).tolist()},
+            "load": {
+                "P": 1130450.3766495052,
+                "Q": [102408.12552396565, -102408.12552396565],
+                "sigma": [1962095606.409643, -1962095606.409643],
+            },
+            "fem": {"accuracy": 1.5248213432847917e-4},
+        }
+    )
+
+    def errors():
+        outcome = partialslip.run(scene, ["fem", "exact"])
+        fem, exact = outcome.results["fem"], outcome.results["exact"]
+        found = np.subtract(fem.ends[1], exact.ends[1]) / exact.a
+        return np.abs(found), [fem.estimate["left"], fem.estimate["right"]]
+
+    off, known = errors()
+    assert (off < known).all()
+    monkeypatch.setattr(solving, "NEAREST", solving.VERTICES)
+    off, known = errors()
+    assert (off > 2 * np.array(known)).all()

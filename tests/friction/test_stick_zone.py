@@ -82,7 +82,7 @@ def test_a_kink_of_the_profile_that_the_fit_reaches_is_seen(kink, size, growth, 
     errors = [abs(zone.right - 1) for zone in zones()]
     assert max(errors) > 8e-3 * size
     assert all(error < 1.6 * zone.fits[1] for error, zone in zip(errors, zones(), strict=True))
-    monkeypatch.setattr(zone_ends, "_NEAREST", zone_ends._VERTICES)
+    monkeypatch.setattr(zone_ends, "NEAREST", zone_ends.VERTICES)
     assert all(zone.fits == (0, 0) for zone in zones())
 
 

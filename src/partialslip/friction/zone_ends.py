@@ -5,8 +5,8 @@ The force between a mesh vertex and the end therefore varies like distance^(3/2)
 and its root is the end. Forces are more accurate than nodal tractions: they hardly depend on the error of the traction
 in the last elements.
 
-The fit needs a smooth function. Cells grow away from the end, so its vertices may reach as far as a kink of the profile
-in the stick zone. A second fit, to fewer vertices, tells by how much that matters.
+The fit needs a smooth function. Cells grow away from the end, so its vertices may reach as far as a kink of the
+profile, or as far as the gap departs from a parabola. A second fit, to fewer vertices, tells by how much that matters.
 
 Where the stick zone moves over nodes that have slipped, they stick again, and 2 f p - |dq| falls towards the end like
 distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth. The loads at which these nodes stuck
@@ -27,10 +27,10 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices, Mask
 
-_VERTICES = 5  # accuracy: of the fit
+VERTICES = 5  # accuracy: of the fit
 # accuracy: of the fit that tells its error (measured on flat-rounded contacts: beside kinks it is several times more
 # accurate; without a kink both fits agree to a tenth of the error that the elements leave)
-_NEAREST = 3
+NEAREST = 3
 _BESIDE, _FINER = 3, 0.95  # accuracy: cells compared on each side of a refined point; relative size of refined cells
 _STICKS = 1e-9  # accuracy: room, relative to the bound, up to which a node slips
 _LEAVES = 1e-6  # accuracy: distance of q from the bound, relative, that counts as none: such weak kinks do not matter
@@ -111,7 +111,7 @@ def read_stick_zone(
         for inside, power in zip((sticks, sticks[::-1]), powers, strict=True)
     ]
     (left, near_left), (right, near_right) = (
-        [end_of(vertices, room, np.sort(x[nodes]), power, count) for count in (_VERTICES, _NEAREST)]
+        [end_of(vertices, room, np.sort(x[nodes]), power, count) for count in (VERTICES, NEAREST)]
         for end_of, room, nodes, power in zip((left_end, right_end), rooms, fitted, powers, strict=True)
     )
     fits = abs(left - near_left), abs(right - near_right)
@@ -132,7 +132,7 @@ def read_stick_zone(
             strips[side] = max(strips[side], unsure)
             continue
         count = _slipped(changed, inside)
-        few = count > 0 and _vertices(x[inside[[0, count - 1]]], vertices) < _VERTICES
+        few = count > 0 and _vertices(x[inside[[0, count - 1]]], vertices) < VERTICES
         again = stuck is not None and bool(np.isfinite(stuck[beyond]) and not stuck[beyond] >= changed[beyond])
         none = again and bool(np.isnan(changed[inside[0]]))
         if few or none:
@@ -315,7 +315,7 @@ def apart(ends: Sequence[float], size: float, known: Sequence[float] = ()) -> li
     return kept
 
 
-def right_end(vertices: Array, forces: Array, inside: Array, power: float = _ROOT, count: int = _VERTICES) -> float:
+def right_end(vertices: Array, forces: Array, inside: Array, power: float = _ROOT, count: int = VERTICES) -> float:
     """Right end of a zone.
 
     Parameters
@@ -336,7 +336,7 @@ def right_end(vertices: Array, forces: Array, inside: Array, power: float = _ROO
     x = x[x >= inside[0]]
     force = np.cumsum(forces[::-1])[len(forces) - last :][: len(x)]
     # leave out the nearest vertex, beyond which the zone covers only part of a cell, if there are enough others
-    skip = 1 if len(x) > _VERTICES else 0
+    skip = 1 if len(x) > VERTICES else 0
     x, force = x[skip : skip + count], force[skip : skip + count]
     near, far = inside[-1], vertices[min(last + 1, len(vertices) - 1)]
     beyond = vertices[min(int(np.searchsorted(vertices, near, "right")), len(vertices) - 1)]
@@ -355,6 +355,7 @@ def contact_ends(
     shear: Array | None = None,
     beta: float = 0.0,
     rise: float = ROUNDED,
+    count: int = VERTICES,
 ) -> tuple[float, float]:
     """Left and right end of the contact.
 
@@ -374,21 +375,22 @@ def contact_ends(
     rise : float
         Power of the distance with which the normal force grows from an end where q vanishes: ``ROUNDED`` where the
         surfaces part smoothly, ``CORNER`` under a flat punch.
+    count : int
+        As for :func:`right_end`.
     """
     more = [0.0, 0.0]
     if shear is not None and beta:
         first, last = np.searchsorted(vertices, inside[[0, -1]])
         for side, cells in enumerate(
-            (slice(max(first - 1, 0), first - 1 + _VERTICES), slice(max(last - _VERTICES, 0), last))
+            (slice(max(first - 1, 0), first - 1 + VERTICES), slice(max(last - VERTICES, 0), last))
         ):
             total = float(normal[cells].sum())
             more[side] = math.atan(beta * float(shear[cells].sum()) / total) / math.pi if total > 0 else 0.0
-    return left_end(vertices, normal, inside, 1 / (rise - more[0])), right_end(
-        vertices, normal, inside, 1 / (rise + more[1])
-    )
+    left = left_end(vertices, normal, inside, 1 / (rise - more[0]), count)
+    return left, right_end(vertices, normal, inside, 1 / (rise + more[1]), count)
 
 
-def left_end(vertices: Array, forces: Array, inside: Array, power: float = _ROOT, count: int = _VERTICES) -> float:
+def left_end(vertices: Array, forces: Array, inside: Array, power: float = _ROOT, count: int = VERTICES) -> float:
     """Left end of a zone: :func:`right_end` of the mirror image."""
     return -right_end(-vertices[::-1], forces[::-1], -inside[::-1], power, count)
 
