@@ -51,7 +51,7 @@ _SHEARS = ("q", "q1", "q2")
 KEYS = (*END_KEYS, "p", *_SHEARS)
 
 # accuracy: Safety factors on errors away from the ends (measured: benchmarks/estimates.py).
-_SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.9, "n": 1.9, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
+_SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.3, "n": 1.3, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _EASED_SAFE = {6: 2.0}  # accuracy: the same for meshes that grow faster near the ends, by order
 _LEAST_OF_A = 1 / 3  # accuracy: of the error of a: least error of any end
 # accuracy: Least errors of m and n where slip turns round, measured: in their own change; and the largest one due to
@@ -60,8 +60,8 @@ _OF_TURNED, _MOST = 0.2, 2.0
 _NARROW = 0.1  # accuracy: of the norm of f p: shear with a smaller norm is confined to narrow strips
 
 # accuracy: Errors due to the elements at the ends, measured; benchmarks/estimates.py checks the sum of all errors.
-# Error of an end of the contact, in the mean size of the element that the end lies in and its neighbours, by order:
-# at a vertex, and inside an element, at least a fifth of it from both vertices.
+# Error of an end of a zone, in the mean size of the element that the end lies in and its neighbours, by order: at a
+# vertex, and inside an element, at least a fifth of it from both vertices.
 _AT_VERTEX = {1: 0.1, 2: 0.03, 3: 0.003, 4: 0.002, 6: 0.001}
 _INSIDE, _BESIDE = {1: 0.1, 2: 0.03, 3: 0.006, 4: 0.007, 6: 0.002}, 0.2
 # Factors of (element size / gap)^2 in the error of an end of the stick zone: gap to the other end of the stick zone,
@@ -70,7 +70,6 @@ _FIT = np.array([8.0, 2.0])
 # accuracy: error of an end due to the fit, in the distance of both fits, as the shorter one has a part of that error
 # (measured on exact forces beside kinks of flat-rounded profiles: 1.1 to 1.6)
 _READ = 1.5
-_STICK = 1.5  # accuracy: error of an end of the stick zone, in the error of an end of the contact
 # accuracy: The same of bodies of unlike materials, where p and q vary with each other, in the element size
 # (measured): after a cycle, and under a flat punch, whose corner is to be found, too. Ends of their contact: where
 # the slip zone is wider than an element, whose p is a power of the distance, and where it is not.
@@ -91,7 +90,7 @@ _SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength t
 _OF_BROKEN = 0.4
 _ACROSS = 3.0  # accuracy: elements on either side of a kink from which its strength is found
 # accuracy: Errors of p and q, in the error of an end, for Hertz contacts; in other contacts also times the steepness.
-_TRACTIONS = {"p": 12.0, "q": 40.0}
+_TRACTIONS = {"p": 8.0, "q": 32.0}
 
 
 def neighbour(solution: MeshSolution, problem: Problem, width: float, clock: Clock) -> MeshSolution:
@@ -183,7 +182,7 @@ def end_errors(solution: MeshSolution, sizes: Array, inside: Array, gaps: Array,
             read = np.minimum(_READ * np.array(solution.stick.fits) / solution.half_width, _SIDE * sizes[2:4])
             reaches = np.isfinite(gaps[:, 2:4]).any(axis=0)  # a fit has no error where nothing is near
             fit[2:4] = np.maximum(fit[2:4], reaches * read)
-        fitted = _STICK * off + fit
+        fitted = off + fit
         if solution.dissimilar:
             fitted[2:4] += _PUNCHED * sizes[:4].max() if solution.slips_when_pressed else _COUPLED * sizes[2:4]
         if solution.history and solution.history.turns:

@@ -34,8 +34,10 @@ def fine():
     return compared("hertz-large-tension", "fem.accuracy=1e-6").comparisons["fem"]
 
 
-def test_errors_fall_with_the_accuracy_asked(run, fine):
-    coarse = run.comparisons["fem"]
+def test_errors_fall_with_the_accuracy_asked(fine):
+    """The largest value falls like the root of the element size at the end of the contact, as its slope is infinite:
+    from one mesh to the next it varies by several times, so that the meshes compared are far apart."""
+    coarse = compared("hertz-large-tension", "fem.accuracy=1e-3").comparisons["fem"]
     assert fine.errors["surface"] < coarse.errors["surface"] / 5
     assert fine.errors["largest"] < coarse.errors["largest"] / 5
 
