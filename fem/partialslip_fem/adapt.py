@@ -433,7 +433,8 @@ class _Refinement:
         problem = replace(self.problem, order=self.solution.lower.order)
         other = estimate.neighbour(self.solution, problem, self.block_width, self.clock)
         self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
-        smooth = estimate.smooth_errors(self.solution, other, self.eased, self.problem.breaks)
+        corner = goals.corner(self.solution, self.problem)
+        smooth = estimate.smooth_errors(self.solution, other, self.eased, self.problem.breaks, corner)
         self.errors = estimate.combined(self.solution, smooth, self.end_errors)
         self.plates_error = compliance_error(self.problem, self.solution, other, self.errors["a"])
         return smooth

@@ -108,16 +108,22 @@ def neighbour(solution: MeshSolution, problem: Problem, width: float, clock: Clo
 
 
 def smooth_errors(
-    solution: MeshSolution, other: MeshSolution, eased: bool = False, breaks: Sequence[float] = ()
+    solution: MeshSolution,
+    other: MeshSolution,
+    eased: bool = False,
+    breaks: Sequence[float] = (),
+    corner: float = math.inf,
 ) -> dict[str, float]:
     """Errors of ``solution`` away from the ends, from the ``other`` solution of the neighbouring order; ``eased``:
-    whether the elements grow faster near the ends than elsewhere; ``breaks``: where the gap's curvature jumps.
+    whether the elements grow faster near the ends than elsewhere; ``breaks``: where the gap's curvature jumps;
+    ``corner``: as from :func:`partialslip_fem.goals.corner`.
 
     Errors of a, left, right, m and n are in contact half-widths; of p, q, q1 and q2 relative L2 errors of cell means.
     """
     order = solution.lower.order
     power = order / min(order, other.lower.order) - 1
-    changes, prefactors = _changes(solution, other), _prefactors(solution)
+    changes = _changes(solution, other)
+    prefactors = _prefactors(solution) | dict.fromkeys(END_KEYS, min(corner / solution.half_width, 1.0))
     safe = _EASED_SAFE.get(order, 1.0) if eased else 1.0
     errors = {
         key: safe * _SAFE[key] * change * (change / prefactors.get(key, 1.0)) ** power

@@ -196,10 +196,10 @@ def eased(solution: MeshSolution, problem: Problem, order: int, growth: float) -
     """
     if order not in _EASED_SHARE or growth >= growth_for(_EASED_BELOW, order) or solution.wanders:
         return None
-    return Eased(_STEEPEST, min(solution.half_width, _corner(solution, problem)), 1 / order)
+    return Eased(_STEEPEST, min(solution.half_width, corner(solution, problem)), 1 / order)
 
 
-def _corner(solution: MeshSolution, problem: Problem) -> float:
+def corner(solution: MeshSolution, problem: Problem) -> float:
     """Least distance of a kink of the profile in the contact from an end of the contact; infinite without kinks."""
     kinks = np.array([kink for kink in problem.kinks if solution.left < kink < solution.right])
     return float(np.minimum(kinks - solution.left, solution.right - kinks).min(initial=np.inf))
