@@ -162,6 +162,12 @@ def on_one_mesh(method: str, scene: Scene, start: Any = None) -> Result:
     return found
 
 
+def answered(method: str, scene: Scene, own: bool = False, *patches: Any) -> Answer:
+    """The answer to ``scene`` in a :func:`guise`."""
+    with guise(*patches, own=own):
+        return answer((solved if own else on_one_mesh)(method, scene), scene, own)
+
+
 def compared(
     method: str,
     scene: Scene,
@@ -172,11 +178,8 @@ def compared(
 ) -> Apart:
     """How far ``other``, solved in a guise and brought back, is from ``scene``."""
     assert patches or scene != other
-    solve = solved if own else on_one_mesh
-    with guise(own=own):
-        one = answer(solve(method, scene), scene, own)
-    with guise(*patches, own=own):
-        return apart(one, bring_back(answer(solve(method, other), other, own)), scene.friction.f)
+    one = answered(method, scene, own)
+    return apart(one, bring_back(answered(method, other, own, *patches)), scene.friction.f)
 
 
 # -- scenes in another guise ------------------------------------------------------------------------------------------
@@ -299,8 +302,7 @@ def without_friction(f: float, method: str, kind: str, *settings: str) -> Apart:
     scene = scene_of(kind, *settings)
     some = scene_of(kind, *settings, f"friction.f={f}", *times(scene, f / scene.friction.f, f / scene.friction.f))
     none = scene_of(kind, *settings, "friction.f=0")
-    with guise():
-        one, other = (answer(on_one_mesh(method, each), each) for each in (none, some))
+    one, other = answered(method, none), answered(method, some)
     one, other = (found._replace(ends=found.ends[:1], q=0 * found.p) for found in (one, other))
     return apart(one, other, 1.0)
 
@@ -374,11 +376,8 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
 
         return instead(fem_method, "uniform", uniform) if method == "fem" else instead(coulomb, "march", march)
 
-    with guise(moved(0.0, 0.0)):
-        one = answer(on_one_mesh(method, scene), scene)
-    with guise(moved(shift, approach)):
-        other = answer(on_one_mesh(method, scene), scene).moved(-shift * scene.length if method == "fem" else 0.0)
-    return apart(one, other, scene.friction.f)
+    one, other = (answered(method, scene, False, moved(*each)) for each in ((0.0, 0.0), (shift, approach)))
+    return apart(one, other.moved(-shift * scene.length if method == "fem" else 0.0), scene.friction.f)
 
 
 def shuffled(seed: int, *args: Any) -> Mesh:

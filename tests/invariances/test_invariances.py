@@ -1,5 +1,8 @@
 """Nothing that must not matter does: every pair of every method."""
 
+import functools
+
+import pairs
 import pytest
 from pairs import Trial, trials
 
@@ -11,6 +14,13 @@ TRIALS = [
     )
     for trial in trials()
 ]
+
+ANSWERED = functools.cache(pairs.answered)
+
+
+@pytest.fixture(autouse=True)
+def _each_scene_is_solved_once(monkeypatch):
+    monkeypatch.setattr(pairs, "answered", ANSWERED)
 
 
 @pytest.mark.parametrize("trial", TRIALS)
