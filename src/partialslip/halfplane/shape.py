@@ -84,7 +84,7 @@ class Shape:
 
     def difference(self, t: Array, x: Array) -> Array:
         """(p(t) - p(x))/(t - x), in p0."""
-        return self._quotient(t, self.pressure(t), x)
+        return _quotient(t, self.pressure(t), x, self.pressure(x))
 
     def conditions(self, edge: Array, c: Array, s: Array) -> Conditions:
         """Loads of the stick zone by quadrature of the consistency conditions, eqs. (17) and (18), moments being taken
@@ -94,6 +94,7 @@ class Shape:
         # the stiffness of an end tends to a limit as the slip zone beside the end vanishes
         gap, near = np.maximum(1 - centre - c, _THIN), np.maximum(edge, _THIN)
         ends = 1 - gap, near - 1
+        at_ends = [self.pressure(end) for end in ends]
         first = second = right = left = np.zeros(np.shape(c))
         for side, sign in ((1, np.ones_like(s)), (-1, -s)):
             t, _, weights = self.rule(edge, c, side)
@@ -101,12 +102,15 @@ class Shape:
             first = first + sign * (weights * p).sum(axis=-1)
             second = second + sign * (weights * p * (t - centre[..., None])).sum(axis=-1)
             # minus the smooth part of the traction in the stick zone, see _inside in partialslip.halfplane.traction
-            smooth = [(self._quotient(t, p, end[..., None]) * weights).sum(axis=-1) for end in ends]
+            smooth = [
+                (_quotient(t, p, end[..., None], at_end[..., None]) * weights).sum(axis=-1)
+                for end, at_end in zip(ends, at_ends, strict=True)
+            ]
             right = right - side * np.abs(sign) * np.where(side > 0, 1, s) * c * smooth[0]
             left = left - side * np.where(side > 0, s, 1) * c * smooth[1]
         to_right, to_left = np.sqrt(gap / (gap + 2 * c)), np.sqrt(near / (near + 2 * c))
-        right = (right + self.pressure(ends[0]) * (1 / to_right - s * to_left)) / np.pi
-        left = (left + self.pressure(ends[1]) * (1 / to_left - s * to_right)) / np.pi
+        right = (right + at_ends[0] * (1 / to_right - s * to_left)) / np.pi
+        left = (left + at_ends[1] * (1 / to_left - s * to_right)) / np.pi
         skew = np.where(c > NARROW, (right - left) / c, 0.0)
         return Conditions(8 / np.pi * first, 2 / np.pi * second, right, left, skew)
 
@@ -130,10 +134,6 @@ class Shape:
         # drop empty pieces, which belong to kinks outside this slip zone
         widest = np.diff(ends).reshape(-1, ends.shape[-1] - 1).max(axis=0, initial=0.0)
         return ends[..., np.append(True, (widest > 0) | (widest.max() == 0))]
-
-    def _quotient(self, t: Array, values: Array, x: Array) -> Array:
-        step = t - x
-        return (values - self.pressure(x)) / np.where(step == 0, np.inf, step)
 
 
 class Mirrored(Shape):
@@ -162,6 +162,11 @@ class Mirrored(Shape):
 
     def difference(self, t: Array, x: Array) -> Array:
         return -self._of.difference(-t, -x)
+
+
+def _quotient(t: Array, at_t: Array, x: Array, at_x: Array) -> Array:
+    step = t - x
+    return (at_t - at_x) / np.where(step == 0, np.inf, step)
 
 
 def rule_between(ends: Array, edge: Array | float, c: Array | float, side: int) -> Rule:

@@ -1,5 +1,6 @@
 """Loads: the normal force and its moment, and the cycle of shear force and bulk tension."""
 
+import functools
 import itertools
 from typing import Annotated
 
@@ -140,9 +141,7 @@ class Load(Table, frozen=True, kw_only=True):
     def ends(self) -> tuple[int, int]:
         """Indices of load points 1 and 2, the extremes of the cycle in the order of visits: the extremes of Q, or of
         the displacement, or of sigma where Q is constant, or of P, or of M, or of sigma_slope."""
-        values = self._leading
-        first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
-        return (first, second) if first != second else (0, len(values) - 1)
+        return _ends(self)
 
     @property
     def progress(self) -> Array:
@@ -215,3 +214,10 @@ class Load(Table, frozen=True, kw_only=True):
         return (
             self.in_phase and not self.presses_anew and all(one == -two for one, two in zip(first, second, strict=True))
         )
+
+
+@functools.lru_cache(maxsize=64)  # a run asks for them hundreds of times
+def _ends(load: Load) -> tuple[int, int]:
+    values = load._leading
+    first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
+    return (first, second) if first != second else (0, len(values) - 1)
