@@ -83,7 +83,12 @@ def origin_lines(origins: Sequence[Made]) -> list[tuple[str, str]]:
 
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the packages that compute the results."""
-    return {"python": platform.python_version(), **{package: version(package) for package in _LIBRARIES}}
+    return {"python": platform.python_version(), **_libraries()}
+
+
+@cache
+def _libraries() -> dict[str, str]:
+    return {package: version(package) for package in _LIBRARIES}
 
 
 @cache

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from closed import CLOSED
+from closed import CLOSED, exact
 from msgspec.structs import replace
 
 from partialslip import load_scene
@@ -13,7 +13,6 @@ from partialslip.benchmark.freeze import covering, frozen_parts
 from partialslip.benchmark.measured import GROUPS, quantities
 from partialslip.benchmark.problem import EDITION, chosen_problems, problem_checksum, read_frozen, texts
 from partialslip.errors import InputError
-from partialslip.run import run
 from partialslip.scene import Effects, Fatigue
 from partialslip.scene.reading import shipped_scenes
 
@@ -30,7 +29,7 @@ def test_no_problem_and_no_target_moves_within_an_edition():
 @pytest.mark.parametrize("number", CLOSED)
 def test_targets_in_closed_form_are_found_again(number):
     problem = PROBLEMS[number]
-    found = quantities(problem.scene, run(problem.scene, "exact")["exact"], problem.places)
+    found = quantities(problem.scene, exact(number), problem.places)
     assert found.keys() >= problem.targets.keys()
     for key, target in problem.targets.items():
         assert abs(found[key].value - target.value) <= target.uncertainty * target.scale, key

@@ -1,6 +1,5 @@
 """One meaning of the stick zone in all problems, and the problem in which slip turns round."""
 
-import functools
 import json
 import runpy
 from pathlib import Path
@@ -8,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from closed import CLOSED
+from closed import CLOSED, exact
 
 from partialslip.benchmark import read_problems, turning
 from partialslip.benchmark.codes.calculix import Calculix
@@ -20,7 +19,6 @@ from partialslip.benchmark.turning import event_by_event, slip_reverses
 from partialslip.export.load_steps import steps_of
 from partialslip.halfplane import contact
 from partialslip.halfplane.turning import half_cycle
-from partialslip.run import run
 
 PROBLEMS = read_problems()
 NUMBER = "PS-27"
@@ -28,11 +26,6 @@ PROBLEM = PROBLEMS[NUMBER]
 CYCLIC = [number for number, problem in PROBLEMS.items() if {"m", "dq@0.5"} <= problem.targets.keys()]
 CLOSED_CYCLIC = [number for number in CYCLIC if number in CLOSED]
 READING = runpy.run_path(str(Path(__file__).parents[2] / "benchmarks" / "peers" / "increments.py"))
-
-
-@functools.cache
-def exact(number):
-    return run(PROBLEMS[number].scene, "exact")["exact"]
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,7 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -288,8 +289,8 @@ def test_stopped_before_the_page_is_written(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("what", ["run_page", "tractions_csv", "record"])
-def test_stopped_over_older_files(tmp_path, monkeypatch, what):
-    assert main([*EXACT, "--out", str(tmp_path)]) == 0
+def test_stopped_over_older_files(exact, tmp_path, monkeypatch, what):
+    shutil.copytree(exact.folder, tmp_path, dirs_exist_ok=True)
     page = (tmp_path / "report.html").read_bytes()
     monkeypatch.setattr(files, what, stop)
     assert main([*EXACT, "--set", "load.p0=3e8", "--out", str(tmp_path), "--force"]) == 130

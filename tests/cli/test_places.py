@@ -48,6 +48,7 @@ def own(asked):
 def coarse(monkeypatch):
     """Maps of few zones, without figures: where they go does not depend on what is in them."""
     monkeypatch.setattr(grid, "_COUNT", 4)
+    monkeypatch.setattr(grid, "_RATIOS", np.linspace(0, 8, 5))
     for name in ("map_svg", "ends_svg"):
         monkeypatch.setattr(map_files, name, lambda _: "<svg/>")
 

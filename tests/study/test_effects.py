@@ -1,6 +1,7 @@
 """Only effects that a scene calls for are built, as counted work shows; effects left out would not change the result;
 and missing effects are reported."""
 
+import functools
 import itertools
 import json
 import subprocess
@@ -51,10 +52,13 @@ WORK = {
 }
 
 
-def fem(*overrides, name="hertz-shear", subsurface=False):
+def solved_fem(*overrides, subsurface=False):
     """Result of finite elements, with the forced effects of the scene."""
-    scene = load_scene(name, [SIZE, *overrides])
+    scene = load_scene("hertz-shear", [SIZE, *overrides])
     return fem_method.solve(reduced(scene), plan(scene, subsurface=subsurface))
+
+
+fem = functools.cache(solved_fem)
 
 
 def march(*overrides, name="hertz-shear"):
@@ -97,7 +101,7 @@ def spied(monkeypatch):
 def test_left_out_effects_count_zero(name, spied):
     overrides, subsurface = SIX[name]
     scene = load_scene("hertz-shear", [SIZE, *overrides])
-    effects, counts = plan(scene, subsurface=subsurface), fem(*overrides, subsurface=subsurface).counts
+    effects, counts = plan(scene, subsurface=subsurface), solved_fem(*overrides, subsurface=subsurface).counts
     for effect, work in WORK.items():
         if not effects.needs(effect):
             assert work(counts) == 0, effect
@@ -131,7 +135,7 @@ def test_shear_columns_that_nobody_needs_are_noticed(monkeypatch):
     """Deliberate fault."""
     true = bodies.Condensation
     monkeypatch.setattr(bodies, "Condensation", lambda *args: true(*args[:3]))
-    counts = fem(*SIX["frictionless"][0]).counts
+    counts = solved_fem(*SIX["frictionless"][0]).counts
     assert counts["columns"] == 2 * counts["normal_unknowns"]
 
 

@@ -1,6 +1,7 @@
 """The command line. Exit codes: see :mod:`partialslip.cli.ending`."""
 
 import argparse
+import functools
 import shlex
 import sys
 from collections.abc import Sequence
@@ -65,6 +66,7 @@ def _command(arguments: Sequence[str] | None) -> int:
     return options.command(options)
 
 
+@functools.cache  # for calls from Python, one after the other
 def parser() -> argparse.ArgumentParser:
     """Return the parser with all commands and options."""
     root = _Parser(

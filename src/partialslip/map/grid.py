@@ -7,6 +7,7 @@ Loads are scaled by the friction: Qf = dQ/(2 f P) and sf = dsigma/(f p0) with p0
 dQ and dsigma; other signs follow by symmetry.
 """
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -189,6 +190,7 @@ def _n_line(n: float, shape: Shape) -> MapLine:
     return MapLine(n, loads.Qf, loads.sf)
 
 
+@functools.cache
 def _fine_zones() -> LoadedZones:
     """Return gradual zones of Hertz contacts on a fine grid of loads."""
     Qf, sf = np.meshgrid(np.linspace(0, 1, _FINE, endpoint=False), np.linspace(0, _TOP, _FINE))

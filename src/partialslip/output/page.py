@@ -1,5 +1,6 @@
 """Self-contained HTML pages from templates, and the same as PDF."""
 
+import functools
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -12,6 +13,7 @@ from partialslip.errors import MissingLibraryError
 from partialslip.output.files import write_files
 
 
+@functools.cache
 def template(package: str, name: str) -> Template:
     """Return the template ``name`` of ``package``; the template may include the templates of this package."""
     environment = Environment(

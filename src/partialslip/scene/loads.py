@@ -170,12 +170,7 @@ class Load(Table, frozen=True, kw_only=True):
     @property
     def in_phase(self) -> bool:
         """Whether all loads are in phase: all load points lie on one straight line."""
-        first, second = self.ends
-        loads = (self._all - self._all[first]).T
-        return all(
-            bool((np.abs(one * other[second] - other * one[second]) <= ROUGH * np.ptp(one) * np.ptp(other)).all())
-            for one, other in itertools.combinations(loads, 2)
-        )
+        return _in_phase(self)
 
     @property
     def dQ(self) -> float:
@@ -221,3 +216,13 @@ def _ends(load: Load) -> tuple[int, int]:
     values = load._leading
     first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
     return (first, second) if first != second else (0, len(values) - 1)
+
+
+@functools.lru_cache(maxsize=64)
+def _in_phase(load: Load) -> bool:
+    first, second = load.ends
+    loads = (load._all - load._all[first]).T
+    return all(
+        bool((np.abs(one * other[second] - other * one[second]) <= ROUGH * np.ptp(one) * np.ptp(other)).all())
+        for one, other in itertools.combinations(loads, 2)
+    )
