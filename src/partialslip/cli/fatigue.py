@@ -48,7 +48,7 @@ def add(commands: Commands) -> None:
 def _fatigue(options: argparse.Namespace) -> int:
     check_output(options)
     if options.distance is not None:
-        options.overrides.append(f"fatigue.distance={options.distance}")
+        options.overrides = [*options.overrides, f"fatigue.distance={options.distance}"]
     scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import working

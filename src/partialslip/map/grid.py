@@ -160,11 +160,11 @@ def _mapped(shape: Shape, top: float, progress: Callable[[str], None]) -> StickM
     turns = transition(_CONSTANT, shape)
     ratios = np.broadcast_to(_RATIOS, (len(_CONSTANT), len(_RATIOS)))
     tensions = np.sort(np.concatenate([np.pi * _CONSTANT[:, None] * ratios, turns[:, None]], axis=1), axis=1)
-    fine = _fine_zones() if isinstance(shape, HertzShape) else None
+    m_lines, n_lines = _hertz_lines() if isinstance(shape, HertzShape) else _lines_of(shape)
     return StickMap(
         grid=_zones(grid[0], grid[1], shape, lambda share: progress(f"map {share:.0%}")),
-        m_lines=_lines([line for m in M_LEVELS for line in _m_lines(m, shape)], "m", shape, fine),
-        n_lines=_lines([_n_line(n, shape) for n in N_LEVELS], "n", shape, fine),
+        m_lines=m_lines,
+        n_lines=n_lines,
         border=_m_lines(1.0, shape)[0],
         curves=_zones(_CONSTANT[:, None] + 0 * tensions, tensions, shape, lambda share: progress(f"ends {share:.0%}")),
         turns=_zones(_CONSTANT, turns, shape),
@@ -190,11 +190,18 @@ def _n_line(n: float, shape: Shape) -> MapLine:
     return MapLine(n, loads.Qf, loads.sf)
 
 
+def _lines_of(shape: Shape, fine: LoadedZones | None = None) -> tuple[list[MapLine], list[MapLine]]:
+    """Return the lines of equal m and of equal n."""
+    m_lines = [line for m in M_LEVELS for line in _m_lines(m, shape)]
+    n_lines = [_n_line(n, shape) for n in N_LEVELS]
+    return _lines(m_lines, "m", shape, fine), _lines(n_lines, "n", shape, fine)
+
+
 @functools.cache
-def _fine_zones() -> LoadedZones:
-    """Return gradual zones of Hertz contacts on a fine grid of loads."""
+def _hertz_lines() -> tuple[list[MapLine], list[MapLine]]:
+    """Return the lines for Hertz, through gradual zones on a fine grid of loads."""
     Qf, sf = np.meshgrid(np.linspace(0, 1, _FINE, endpoint=False), np.linspace(0, _TOP, _FINE))
-    return _zones(Qf, sf, HertzShape())
+    return _lines_of(HertzShape(), _zones(Qf, sf, HertzShape()))
 
 
 def _lines(once: list[MapLine], of: str, shape: Shape, fine: LoadedZones | None) -> list[MapLine]:
