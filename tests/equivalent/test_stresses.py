@@ -26,11 +26,6 @@ def equivalent(scene=SCENE, **more):
     return partialslip.run(scene, "equivalent", subsurface=True, **more)["equivalent"]
 
 
-@pytest.fixture(scope="module")
-def found():
-    return equivalent()
-
-
 def inside_off(result, fem):
     """Largest difference of stresses inside the bodies at the load points, in p0."""
     x = fem.a * np.array([-0.5, 0.3, 0.9, 1.3])[:, None]
@@ -38,21 +33,21 @@ def inside_off(result, fem):
     return np.abs(result.stress_at(x, y) - fem.stress_at(x, y)).max() / fem.p0
 
 
-def test_stresses_on_the_surfaces_and_inside_are_those_of_the_bodies(fem, found):
+def test_stresses_on_the_surfaces_and_inside_are_those_of_the_bodies(fem):
     """Half-planes leave out a hundred times as much."""
-    exact = partialslip.run(SCENE, "exact", subsurface=True)["exact"]
+    found, exact = equivalent(), partialslip.run(SCENE, "exact", subsurface=True)["exact"]
     x = fem.a * np.array([-1.8, -1.2, -0.5, 0.0, 0.4, 0.8, 1.1, 1.6])
     off = [np.abs(each.surface.at(x) - fem.surface.at(x)).max() / fem.p0 for each in (found, exact)]
     assert off[0] < 1e-3 < 0.03 < off[1]
     assert inside_off(found, fem) < 1e-3 < 0.03 < inside_off(exact, fem)
 
 
-def test_the_estimate_holds_for_each_stress(fem, found):
-    true, spots = hot_spots(SCENE, fem), hot_spots(SCENE, found)
-    assert spots.keys() == true.keys()
-    for key, spot in spots.items():
+def test_the_estimate_holds_for_each_stress(fem):
+    true, found = hot_spots(SCENE, fem), hot_spots(SCENE, equivalent())
+    assert found.keys() == true.keys()
+    for key, spot in found.items():
         assert off_by(spot, true[key]) <= spot.error + true[key].error
-    assert off_by(spots["sigma_xx"], true["sigma_xx"]) < 1e-3
+    assert off_by(found["sigma_xx"], true["sigma_xx"]) < 1e-3
 
 
 @pytest.mark.slow
@@ -64,13 +59,15 @@ def test_under_mean_loads_march_tells_the_stresses():
         assert off_by(found[key], true[key]) <= found[key].error + true[key].error < 0.03
 
 
-def test_stresses_are_mirrored_with_the_loads(found):
+def test_stresses_are_mirrored_with_the_loads():
+    found = equivalent()
     turned = equivalent(SCENE.replace({"load.Q": [3e4, -3e4], "load.sigma": [-2e7, 2e7]}))
     x = found.a * np.array([-1.3, -0.4, 0.2, 0.9])
     np.testing.assert_allclose(turned.surface.at(-x), found.surface.at(x), atol=1e-6 * found.p0)
 
 
-def test_nothing_is_known_beyond_the_reach_of_the_rig_and_nothing_is_done_unasked(found):
+def test_nothing_is_known_beyond_the_reach_of_the_rig_and_nothing_is_done_unasked():
+    found = equivalent()
     reach = partialslip.characterise(SCENE).reach
     assert np.isnan(found.stress_at([1.01 * reach, 0.0], [0.0, -1.01 * reach])).all()
     assert np.isfinite(found.surface.sigma).all()

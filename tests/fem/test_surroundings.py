@@ -1,7 +1,6 @@
 """What a body's size adds to the displacements of its surface: reciprocity, beams in closed form, and the difference of
 fem's own compliances with and without the half-plane around."""
 
-import functools
 from dataclasses import replace
 from pathlib import Path
 
@@ -127,11 +126,8 @@ def test_surroundings_are_what_the_far_field_changes(held, monkeypatch):
 # the terms of both bodies
 
 
-def found_rig(*overrides):
+def rig_of(*overrides):
     return characterise_bodies(load_scene(SCENE, list(overrides)))
-
-
-rig_of = functools.cache(found_rig)
 
 
 def test_rigs_of_larger_bodies_are_larger():
@@ -160,7 +156,7 @@ def test_coupling_of_the_upper_body_without_its_sign_is_seen(monkeypatch):
     both = [f"bodies.{name}={{width=8e-3, height=4e-3}}" for name in ("upper", "lower")]
     assert not rig_of(*both).terms.xy.any()
     monkeypatch.setattr(characterising, "parts_of", lambda *of: [replace(part, name="lower") for part in parts_of(*of)])
-    assert np.abs(found_rig(*both).terms.xy).max() > 1e-2
+    assert np.abs(rig_of(*both).terms.xy).max() > 1e-2
 
 
 @pytest.mark.slow
