@@ -74,9 +74,11 @@ def test_estimates_hold(exact, method):
 
 @pytest.mark.fault
 def test_the_estimate_needs_the_error_at_the_ends_of_the_contact(exact, monkeypatch):
-    """Deliberate fault: without the error of the Cauchy integrals at the ends, the estimate of swt is too small."""
+    """Deliberate fault: without the error of the Cauchy integrals at the ends, the estimate of swt is too small (but on
+    the mesh for 1e-4, which happens to leave a tenth of the error of finer and coarser ones)."""
     monkeypatch.setattr(spots, "_edge_error", lambda _: 0.0)
-    found = hot_spots(SCENE, partialslip.run(SCENE, "fem", subsurface=True)["fem"])
+    fem = partialslip.run(SCENE.replace({"fem.accuracy": 5e-5}), "fem", subsurface=True)["fem"]
+    found = hot_spots(SCENE, fem)
     assert off_by(found["swt"], hot_spots(SCENE, exact)["swt"]) > found["swt"].error
 
 

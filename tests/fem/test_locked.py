@@ -129,7 +129,7 @@ def test_a_hop_before_a_jump_hides_nothing_of_the_time_off_the_way(way):
 @pytest.mark.fault
 def test_how_long_an_end_that_jumped_was_off_its_way_is_seen(monkeypatch):
     """Under mean tension the left end hops over two nodes, and soon jumps over many. Deliberate fault: an end that has
-    just hopped is taken to be on its way."""
+    just hopped is taken to be on its way, which leaves out a third of the estimate."""
     scene = parse_scene(
         {
             "name": "hops",
@@ -142,7 +142,7 @@ def test_how_long_an_end_that_jumped_was_off_its_way_is_seen(monkeypatch):
                 "sigma": [446615949.0, -562921986.0],
                 "cycles": 6,
             },
-            "fem": {"accuracy": 1e-3},
+            "fem": {"accuracy": 4e-4},
         }
     )
     exact = partialslip.run(scene, ["exact"]).results["exact"]
@@ -151,8 +151,8 @@ def test_how_long_an_end_that_jumped_was_off_its_way_is_seen(monkeypatch):
     assert known.max() <= scene.fem.accuracy
     off = locked._off_the_way
     monkeypatch.setattr(locked, "_off_the_way", lambda *given: (off(*given)[0], given[2]))
-    found, _ = ratios(scene, exact)
-    assert found.min() < 0.8
+    fault, _ = ratios(scene, exact)
+    assert (fault / found).min() < 0.7
 
 
 @pytest.mark.slow

@@ -24,7 +24,7 @@ _CHUNK = 2**14  # cost: stick zones at a time: their arrays fit the processor's 
 _CLOSE = 1e-9  # accuracy: Newton step after which only rounding errors remain
 _SETTLED = 1e-13  # accuracy: residual of Qf
 _ROUNDING = 4 * np.finfo(float).eps
-_STEPS = 40  # cost: Newton steps before bracketing
+_STEPS = 100  # cost: Newton steps before bracketing
 _HELD = 1e-9  # limit: residual of loads above which no stick zone is found
 _FEWER = 2**10  # cost: stick zones at a time whose tractions are compared with the bound
 
