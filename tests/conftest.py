@@ -10,7 +10,6 @@ Programs that tests start and stop by Ctrl-C would ignore it if this one did, as
 They keep the bytecode of the modules that they import: compiling takes a third of a second for each of them.
 
 More than half of all meshes of the tests have been made before: they are remembered, but for tests of meshing itself.
-So are figures of reports, but for tests of figures and deliberate faults (``tests/helpers/figures.py``).
 
 Every test that is marked as a deliberate fault fails if the fault does not bite (``tests/helpers/biting.py``).
 """
@@ -25,13 +24,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 import pytest
 from biting import biting
-from figures import remembered
 from refusing import check
 
 from partialslip.cli import consoles, main
-from partialslip.map import files as map_files
-from partialslip.report import page
-from partialslip.verify import driver
 from partialslip_meshes import blocks, gmsh
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -63,27 +58,8 @@ def _remembered_meshes(request, monkeypatch):
         monkeypatch.setattr(blocks, "ask", lambda each: _made(_Request(each), repr(gmsh.OPTIONS)))
 
 
-_DRAWING = ("report", "map")  # these draw all of theirs
-_FIGURES = [
-    (owner, name, remembered(getattr(owner, name)))
-    for owner, names in (
-        (page, ("traction_svg", "levels_svg", "mesh_svg")),
-        (driver, ("traction_svg",)),
-        (map_files, ("map_svg", "ends_svg")),
-    )
-    for name in names
-]
-
-
 @pytest.fixture(autouse=True)
-def _remembered_figures(request, monkeypatch):
-    if not set(request.path.parts).intersection(_DRAWING) and not request.node.get_closest_marker("fault"):
-        for figure in _FIGURES:
-            monkeypatch.setattr(*figure)
-
-
-@pytest.fixture(autouse=True)
-def _biting(request, _remembered_meshes, _remembered_figures):
+def _biting(request, _remembered_meshes):
     if request.node.get_closest_marker("fault"):
         with biting():
             yield
