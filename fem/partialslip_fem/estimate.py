@@ -18,13 +18,13 @@ Where it turned round q has a kink, which elements of both orders miss alike.
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
 the order: like those of q at kinks, they are a part of the change.
 
-At an end tractions are square roots. There the error depends on the element size, not on the order, and on where in
-its element the end lies: both orders miss one inside an element alike, and the same mesh with a vertex at the end found
-is several times better (:attr:`partialslip_fem.mesh_solution.MeshSolution.inside`). It also depends on
-the distance to the next end or kink of the profile, as ends of the stick zone are fitted to some elements next to them.
-Where these elements grow fast, they reach as far as the kink: ends are not known better than a fit to fewer elements
-agrees (:attr:`partialslip.friction.zone_ends.StickInterval.fits`). Ends of the contact are not, either: under a gap
-that is no parabola p departs from a square root soon (:attr:`partialslip_fem.mesh_solution.MeshSolution.fits`).
+At an end tractions are square roots. There the error depends on the element size, not on the order, and on where in its
+element the end lies: both orders miss one inside an element alike, and the same mesh with a vertex at the end found is
+several times better (:attr:`partialslip_fem.mesh_solution.MeshSolution.inside`). It also depends on the distance to the
+next end or kink of the profile, as ends of the stick zone are fitted to some elements next to them. Where these
+elements grow fast, they reach as far as the kink: ends are not known better than a fit to fewer elements agrees
+(:attr:`partialslip.friction.zone_ends.StickInterval.fits`). Ends of the contact are not, either: under a gap that is no
+parabola p departs from a square root soon (:attr:`partialslip_fem.mesh_solution.MeshSolution.fits`).
 """
 
 import math

@@ -125,19 +125,20 @@ def solve_contact(
         history, nodes, errors = forces.history, forces.nodes, forces.step_errors
         on_line = partial(_on_line, line, nodes)
 
-        def ends_under(p: Array, q: Array | None) -> list[tuple[float, float]]:
-            """Ends of the contact as many vertices of the mesh tell them, and few."""
+        def ends_under(p: Array, q: Array | None) -> tuple[tuple[float, float], Array]:
+            """Ends of the contact, and how far those are apart that many and few vertices of the mesh tell, (2,)."""
             read = partial(contact_ends_of, line, p, q, problem.beta if both else 0.0)
-            return [read(count=count) for count in (VERTICES, NEAREST)]
+            many, few = (read(count=count) for count in (VERTICES, NEAREST))
+            return many, np.abs(np.subtract(many, few))
 
-        (left, right), few = ends_under(forces.pressing.x, on_line(history.q2) if history else None)
+        (left, right), fits = ends_under(forces.pressing.x, on_line(history.q2) if history else None)
         ends_at_1: tuple[float, float] | tuple[()] = ()
-        few_at_1: tuple[float, float] | tuple[()] = ()
         at_first = forces.first
         if history and both and at_first is None:
             at_first = on_line(history.pressures[0])
         if at_first is not None:
-            ends_at_1, few_at_1 = ends_under(at_first, on_line(history.q1) if history else None)
+            ends_at_1, fits_at_1 = ends_under(at_first, on_line(history.q1) if history else None)
+            fits = np.concatenate([fits, fits_at_1])
         growth = growth_when_pressed(forces.pressed, nodes, problem)
         stick = stick_zone_of(line, nodes, history, growth) if history else None
         if stick and growth and forces.pressed:
@@ -164,8 +165,7 @@ def solve_contact(
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
             forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
-            path_errors, forces.path_moves, both and problem.beta != 0, kept, forces.choosing_s,
-            np.abs(np.subtract([*few, *few_at_1], [left, right, *ends_at_1])),
+            path_errors, forces.path_moves, both and problem.beta != 0, kept, forces.choosing_s, fits,
         )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ import pytest
 import partialslip
 from partialslip.judge.means import cell_means
 from partialslip.scene.reading import parse_scene
-from partialslip_fem import estimate, goals
+from partialslip_fem import estimate, goals, solving
 from partialslip_fem.solving import solve_on_meshes
 
 SCENES = [
@@ -198,3 +198,31 @@ def test_an_end_of_the_contact_is_not_known_better_than_two_fits_agree(monkeypat
     assert [known["left"], known["right"]] == pytest.approx(1.5 * apart)
     assert known["a"] == pytest.approx(1.5 * apart.mean())
     assert known["p"] == true(*solved[-1])["p"]  # tractions do not depend on how ends are read
+
+
+@pytest.mark.fault
+def test_two_fits_of_an_end_are_apart_by_what_a_flat_bottom_leaves(monkeypatch):
+    """Gaps like x^6 and x^2 on one mesh. Deliberate fault: both fits are to as many vertices."""
+    x = np.linspace(0, 1.5e-3, 120)
+
+    def apart(power):
+        gap = 1e-6 / 0.02 / power * (x / 1e-3) ** power
+        scene = parse_scene(
+            {
+                "name": "flat-bottom",
+                "material": {"E": 70e9, "nu": 0.3},
+                "friction": {"f": 0.0},
+                "profile": {"kind": "tabulated", "x": x.tolist(), "gap": gap.tolist()},
+                "load": {"P": {2: 1.5e6, 6: 9.4e5}[power]},  # contact half-widths of about 1 mm
+                "fem": {"accuracy": 1e-2},
+            }
+        )
+        partialslip.run(scene, ["fem"])
+        solution, sizes = solved[-1][:2]
+        return (solution.fits / solution.half_width / sizes[:2]).max()
+
+    solved, true = [], estimate.end_errors
+    monkeypatch.setattr(estimate, "end_errors", lambda *given: solved.append(given) or true(*given))
+    assert 0 < 10 * apart(2) < apart(6) < 0.1
+    monkeypatch.setattr(solving, "NEAREST", solving.VERTICES)
+    assert apart(6) == 0

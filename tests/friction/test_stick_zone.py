@@ -54,18 +54,26 @@ def test_the_end_is_not_where_all_nodes_of_a_cell_slip():
     assert right_end(vertices, -np.diff(sharp), nodes) == pytest.approx(0.83, abs=1e-9)
 
 
+def over_cells(vertices, p):
+    """Integrals over cells of a pressure ``p`` of phi, x = sin(phi), that vanishes beyond [-1, 1]."""
+    t, weights = np.polynomial.legendre.leggauss(60)
+    ends = np.arcsin(np.clip(vertices, -1, 1))
+    phi = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * t
+    return np.diff(ends) / 2 * ((p(phi) * np.cos(phi)) @ weights)
+
+
 def read_beside(kink, size, growth, offset):
     """Stick zone [-1, 1] whose room is the pressure of half-planes under a flat-rounded punch with kinks at +-``kink``
     (Ciavarella, Hills and Monno 1998), on cells graded to the kinks and to points ``offset`` cells beyond its ends."""
     end = 1 + offset * size
     vertices = graded_cells(np.array([-1.3, -end, -kink, kink, end, 1.3]), size, growth)
-    t, weights = np.polynomial.legendre.leggauss(40)
-    ends = np.arcsin(np.clip(vertices, -1, 1))
-    phi = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * t
     psi = np.arcsin(kink)
-    p = (np.pi - 2 * psi) * np.cos(phi) + np.sin(phi) * np.log(np.abs(np.sin(phi + psi) / np.sin(phi - psi)))
-    p += kink * np.log(np.abs(np.tan((phi + psi) / 2) * np.tan((phi - psi) / 2)))
-    room = np.diff(ends) / 2 * ((p * np.cos(phi)) @ weights)
+
+    def p(phi):
+        smooth = (np.pi - 2 * psi) * np.cos(phi) + np.sin(phi) * np.log(np.abs(np.sin(phi + psi) / np.sin(phi - psi)))
+        return smooth + kink * np.log(np.abs(np.tan((phi + psi) / 2) * np.tan((phi - psi) / 2)))
+
+    room = over_cells(vertices, p)
     bound = np.full(len(room), room.max())
     return read_stick_zone((vertices[1:] + vertices[:-1]) / 2, bound, 2 * bound - room, vertices, lambda forces: forces)
 
@@ -104,15 +112,16 @@ def test_an_end_of_a_contact_with_a_flat_bottom_is_seen_to_be_unsure(power, leas
     size = 2.4e-3
     reach = size * (2.0 ** np.arange(9) - 1) - offset * size
     vertices = np.concatenate([[-1 - size], reach - 1, 1 - reach[::-1], [1 + size]])
-    t, weights = np.polynomial.legendre.leggauss(60)
-    ends = np.arcsin(np.clip(vertices, -1, 1))
-    phi = (ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * t
-    normal = np.diff(ends) / 2 * ((np.cos(phi) ** 2 * _FLAT_BOTTOMS[power](np.sin(phi))) @ weights)
+    normal = over_cells(vertices, lambda phi: np.cos(phi) * _FLAT_BOTTOMS[power](np.sin(phi)))
     inside = np.sort([*vertices[np.abs(vertices) < 1], *np.linspace(-1, 1, 4001)[1:-1]])
-    (many, few) = (zone_ends.contact_ends(vertices, normal, inside, count=count)[1] for count in (5, 3))
+
+    def right(count):
+        return zone_ends.contact_ends(vertices, normal, inside, count=count)[1]
+
+    many, few = right(zone_ends.VERTICES), right(zone_ends.NEAREST)
     assert least * size <= abs(many - 1) <= most * size
     assert abs(many - 1) < 1.5 * abs(many - few)
-    assert zone_ends.contact_ends(vertices, normal, inside, count=zone_ends.VERTICES)[1] == many
+    assert abs(many - 1) > 1.5 * abs(many - right(zone_ends.VERTICES))
 
 
 def test_a_zone_smaller_than_a_cell_is_where_the_slip_turns_round():
