@@ -36,6 +36,8 @@ class MeshSolution:
         Nodes of the lower contact line that are in contact at load point 1 or 2.
     pressing : Solution
         Normal forces on all nodes of the contact line, at load point 2.
+    most : (n,) array
+        The largest normal forces on the path, on all nodes of the contact line.
     history : History or None
         Tangential forces on ``nodes`` along the load path; None without friction.
     left, right : float
@@ -60,9 +62,10 @@ class MeshSolution:
         Whether shear moves surfaces along y as it does in half-planes of unlike materials (Dundurs' beta is not 0).
     relative : Relative or None
         Compliances of the nodes of the contact line, of two finite bodies.
-    first, most : (n,) arrays or None
-        Where the pressure varies: normal forces on all nodes of the contact line at load point 1, and the largest ones
-        on the path.
+    first : (n,) array or None
+        Where the pressure varies: normal forces on all nodes of the contact line at load point 1.
+    moving : bool
+        Whether the pressure varies.
     largest : int
         Load point with the larger P, 1 or 2, whose contact scales the results.
     passing : tuple of float
@@ -80,6 +83,7 @@ class MeshSolution:
     factored: int
     nodes: Indices
     pressing: Solution
+    most: Array
     history: History | None
     left: float
     right: float
@@ -90,7 +94,7 @@ class MeshSolution:
     pressed: Pressed | None = None
     step_errors: Mapping[str, float] = field(default_factory=dict)
     first: Array | None = None
-    most: Array | None = None
+    moving: bool = False
     largest: int = 2
     passing: tuple[float, ...] = ()
     trail: Trail | None = None
@@ -126,7 +130,7 @@ class MeshSolution:
         meshes are graded to. Not known for coupled bodies, nor out of phase where the pressure varies."""
         if not self.history or self.coupled:
             return False
-        return self.history.turns or (self.most is None and not self.history.path.in_phase)
+        return self.history.turns or not (self.moving or self.history.path.in_phase)
 
     @property
     def turning(self) -> list[float]:
@@ -179,14 +183,14 @@ class MeshSolution:
 
     @property
     def enclosed(self) -> bool:
-        """Whether the contact ends within the contact line."""
-        pressed = self.pressing.x if self.most is None else self.most
-        return bool(pressed[0] == 0 == pressed[-1])
+        """Whether the contact ends within the contact line, on the whole path."""
+        return bool(self.most[0] == 0 == self.most[-1])
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Ends of the contact at load point 2; where the pressure varies, of all that is ever in contact."""
-        if self.most is None:
+        """Ends of the contact at load point 2; where it moves, as it does with Q between coupled bodies, too, of all
+        that is ever in contact."""
+        if not (self.moving or self.coupled):
             return self.left, self.right
         ends, touched = np.array(self.contact_ends), self.lower.x[self.most > 0]
         return min(float(ends.min()), float(touched[0])), max(float(ends.max()), float(touched[-1]))
@@ -201,7 +205,7 @@ class MeshSolution:
     @property
     def common(self) -> tuple[float, float] | None:
         """Ends of what is in contact at both load points; None where the pressure is constant."""
-        if self.most is None:
+        if not self.moving:
             return None
         (left1, right1), (left2, right2) = self.contact_ends
         return max(left1, left2), min(right1, right2)
@@ -209,7 +213,7 @@ class MeshSolution:
     @property
     def swept(self) -> list[tuple[float, float]]:
         """Intervals between the ends of the contacts at load points 1 and 2 beside which the surfaces stick."""
-        if self.most is None or not self.stick:
+        if not (self.moving and self.stick):
             return []
         (left1, right1), (left2, right2) = self.contact_ends
         sides = (

@@ -197,7 +197,7 @@ def _counts(solution: MeshSolution, adapted: Adapted, extra: dict[str, int]) -> 
     ``normal_iterations`` and ``friction_iterations`` are changes of the active set after the first linear solve.
     """
     history, pressing = solution.history, solution.pressing
-    both, anew = history and solution.coupled, solution.most is not None
+    both, anew = history and solution.coupled, solution.moving
     return {
         "dofs": solution.dofs,
         "contact_nodes": len(solution.nodes),

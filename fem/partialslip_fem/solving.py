@@ -163,8 +163,8 @@ def solve_contact(
         if history and forces.pressed:
             errors = step_errors.pressed_together(history, forces.pressed, line.weights, nodes)
         return MeshSolution(
-            bodies, factored, nodes, forces.pressing, history, left, right, stick, ends_at_1, kinks, both,
-            forces.pressed, errors, forces.first, forces.most, problem.largest, passing, forces.trail,
+            bodies, factored, nodes, forces.pressing, forces.most, history, left, right, stick, ends_at_1, kinks, both,
+            forces.pressed, errors, forces.first, problem.contact_moves, problem.largest, passing, forces.trail,
             path_errors, forces.path_moves, both and problem.beta != 0, kept, forces.choosing_s, fits,
         )  # fmt: skip
 
@@ -186,12 +186,12 @@ class _ContactForces:
     """Contact forces on the lower contact line; fields as in :class:`MeshSolution`."""
 
     pressing: Solution
+    most: Array
     history: History | None
     nodes: Indices
     pressed: Pressed | None = None
     step_errors: Mapping[str, float] = field(default_factory=dict)
     first: Array | None = None
-    most: Array | None = None
     trail: Trail | None = None
     path_moves: Array = field(default_factory=lambda: np.zeros((2, 2)))
     choosing_s: float = 0.0
@@ -234,7 +234,7 @@ def _contact_forces(
         loaded = C, gap, stretch, moved[1], problem.f_at(line.x)
         history, pressing, first = coupled.march(*loaded, path, pressed, along, near, pivot)
         nodes = np.flatnonzero(history.bound > 0)
-        most = np.maximum(*history.pressures) if problem.contact_moves else None
+        most = np.max([pressing.x, *history.pressures, *history.around.pressures], axis=0)
         left: step_errors.Errors = {}
         moves, began = np.zeros((2, 2)), time.process_time()
         if check and path.moves:
@@ -243,7 +243,7 @@ def _contact_forces(
             left, moves = _path_errors(problem, line, history, finer), step_errors.of_plates(history, finer)
         choosing = time.process_time() - began
         return _ContactForces(
-            pressing, history.of(nodes), nodes, first, left, None, most, trail, moves, choosing_s=choosing
+            pressing, most, history.of(nodes), nodes, first, left, None, trail, moves, choosing_s=choosing
         )
     opened = gap if path else gap - problem.strains[1][0] * stretch[1]
     arms = line.x if problem.turns else None
@@ -254,7 +254,7 @@ def _contact_forces(
     pressing = shared.press(C.yy, opened, arms, apart, problem.moment)
     nodes = np.flatnonzero(pressing.x > 0)
     if not path:
-        return _ContactForces(pressing, None, nodes)
+        return _ContactForces(pressing, pressing.x, None, nodes)
     if path.before is not None:
         path = replace(path, before=path.before[nodes])
     assert C.xx is not None
@@ -262,7 +262,7 @@ def _contact_forces(
     tangential = shared.tangential(C.xx, nodes)
     known = tangential.C, moved[:, nodes], pressing.x[nodes], problem.f_at(line.x[nodes])
     history = coulomb_constant_pressure.march(*known, path, tangential, slipping, problem.order)
-    return _ContactForces(pressing, history, nodes)
+    return _ContactForces(pressing, pressing.x, history, nodes)
 
 
 def _path_errors(problem: Problem, line: Body, history: History, finer: History) -> step_errors.Errors:
@@ -331,4 +331,4 @@ def _under_varying_pressure(
     together = replace(certified(done), x=second.x, rest=second.rest)
     nodes = np.flatnonzero((first.x > 0) | (second.x > 0))
     history = history.of(nodes) if history else None
-    return _ContactForces(together, history, nodes, None, left, first.x, most, choosing_s=choosing)
+    return _ContactForces(together, most, history, nodes, None, left, first.x, choosing_s=choosing)

@@ -240,6 +240,16 @@ def test_all_but_incompressible_is_for_the_exact_method_alone(rejected, capsys):
     assert capsys.readouterr().err == ""
 
 
+def test_tension_beyond_what_cells_resolve_is_for_the_exact_method_or_without_q(rejected, capsys):
+    strong = ["bench.toml", "--set", "load.sigma=[-1e15,1e15]"]
+    for method in ("march", "fem"):
+        message = rejected(GOOD, ["run", *strong, "--with", method])
+        assert re.search(r"load.sigma = 1e\+15 Pa: must be <= [\d.e+]+ Pa beside Q, by march and fem", message)
+    assert main([*EXACT, *strong[1:], "--json"]) == 0
+    assert main(["run", *strong, "--set", "load.Q=[0,0]", "--with", "march", "--json"]) == 0
+    capsys.readouterr()
+
+
 @pytest.mark.parametrize("key", ["width", "height"])
 @pytest.mark.parametrize("size", ["1e-100", "1e-9", "1e5", "1e100"])
 def test_bodies_out_of_all_proportion(rejected, key, size):

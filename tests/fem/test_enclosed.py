@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip import load_scene
+from partialslip import load_scene, parse_scene
 from partialslip_fem import adapt
 from partialslip_fem.mesh_solution import MeshSolution
 
@@ -60,10 +60,38 @@ def test_a_contact_that_finer_steps_widen_gets_a_wider_line(monkeypatch):
         x = refinement.solution.lower.x
         lines.append(x[-1] - x[0])
         if len(lines) == 1:
-            refinement.solution = replace(refinement.solution, most=np.ones_like(x))
+            refinement.solution = replace(refinement.solution, most=np.ones_like(x), moving=True)
 
     monkeypatch.setattr(adapt._Refinement, "check_steps", wider)
     error, estimate, more = solved()
     assert error < estimate
     assert more > meshes
     assert lines[1] > lines[0]
+
+
+def off_at_load_point_1():
+    """Distance of the contact's left end at load point 1 from that of the march, in half-widths; the larger estimate
+    of both. Shear presses unlike materials together on one side: the contact moves with Q."""
+    unlike = {"upper": {"E": 3e11, "nu": 0.25}, "lower": {"E": 7e10, "nu": 0.1}}
+    load = {"P": 1.8e6, "Q": [-0.72e6, 1e6]}
+    data = {"name": "unlike", "material": unlike, "friction": {"f": 0.8}, "profile": {"kind": "hertz", "R": 0.02}}
+    scene = parse_scene(data | {"load": load, "fem": {"accuracy": 7e-4}})
+    fem, march = (partialslip.run(scene, [method])[method] for method in ("fem", "march"))
+    ends = [result.contact_ends[0][0] / result.a for result in (fem, march)]
+    return abs(ends[0] - ends[1]), max(fem.estimate["left"], march.estimate["left"])
+
+
+@pytest.mark.slow
+def test_the_line_encloses_the_contact_at_both_load_points():
+    error, estimate = off_at_load_point_1()
+    assert error < estimate < 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.fault
+def test_a_line_for_load_point_2_alone_is_seen(monkeypatch):
+    """Deliberate fault: contact lines enclose the contact at load point 2 only, and are said to enclose it."""
+    monkeypatch.setattr(MeshSolution, "reach", property(lambda found: (found.left, found.right)))
+    monkeypatch.setattr(MeshSolution, "enclosed", property(lambda found: not found.pressing.x[[0, -1]].any()))
+    error, estimate = off_at_load_point_1()
+    assert error > 2 * estimate

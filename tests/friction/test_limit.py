@@ -73,7 +73,8 @@ def test_changes_too_large_for_rounding_go_on():
 
 def test_a_change_counts_beside_its_bound_and_the_rounding_of_all_forces():
     forces, near = np.array([1.0, 2.0, 0.0]), np.array([1e-7, 2e-7, 0.0])
-    assert change(forces, forces, near, 3.0) == 0
-    assert change(forces + 1e-7 * np.eye(3)[0], forces, near, 0.0) == pytest.approx(1, rel=1e-6)
-    assert change(forces + 3e-14 * np.eye(3)[2], forces, near, 3.0) == pytest.approx(1 / 3, rel=1e-6)
-    assert change(0 * forces, 0 * forces, 0 * near, 0.0) == 0
+    assert change(forces, forces, near, 3.0, 0.0) == 0
+    assert change(forces + 1e-7 * np.eye(3)[0], forces, near, 0.0, 0.0) == pytest.approx(1, rel=1e-6)
+    assert change(forces + 3e-14 * np.eye(3)[2], forces, near, 3.0, 0.0) == pytest.approx(1 / 3, rel=1e-6)
+    assert change(forces + 3e-14 * np.eye(3)[2], forces, near, 0.0, 2e-15) == pytest.approx(1 / 2, rel=1e-6)
+    assert change(0 * forces, 0 * forces, 0 * near, 0.0, 0.0) == 0

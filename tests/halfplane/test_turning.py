@@ -14,6 +14,7 @@ from partialslip.halfplane import contact_of
 from partialslip.halfplane.gradual_path import slips
 from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.judge.means import norm_errors
+from partialslip.verify.hard_cases.scenes import hard_scene
 
 UNIT = contact_of(lambda x: np.sqrt(1 - x**2), 1.0)
 DRIFT, TO_THE_END, NO_POINT = (0.6434668934976868, 8.670889385947003), (0.75, 6.0), (0.9975, 7.2)
@@ -192,3 +193,15 @@ def test_hysteresis_of_slip_that_turns_round():
     found = cycle(*DRIFT)
     assert loop.displacement[20] == pytest.approx(found.loop(np.array([0.0, 1.0]))[0][-1], rel=1e-9)
     assert loop.displacement[-1] == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.slow
+def test_a_strip_that_sticks_under_a_thousand_times_the_tension():
+    """The rounding of displacements is a thousand times as large as elsewhere: it is no change from cycle to cycle."""
+    run = partialslip.run(hard_scene("strip", 0.4, 1000.0), ["march", "fem"])
+    march, fem = run["march"], run["fem"]
+    assert march.counts["cycles"] == fem.counts["cycles"] == 1
+    for name in "mn":
+        off = abs(getattr(march, name) - getattr(fem, name)) / march.a
+        assert off < march.estimate[name] + fem.estimate[name] < 2e-5
+    assert 0 < march.m + march.n < 4e-3 * march.a

@@ -372,7 +372,8 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
             taken += len(fractions)
         largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
         bound = f * went[-1][-1][1]
-        changes.append(change(points[-1].x, points[-1 - len(went)].x, path.settled * bound, largest))
+        off = max(float(point.residual.max()) for point in points[-len(went) :])
+        changes.append(change(points[-1].x, points[-1 - len(went)].x, path.settled * bound, largest, off))
         if settled(changes):
             break
         ended.append(points[-1].x)

@@ -12,6 +12,8 @@ from partialslip.arrays import Array
 
 # accuracy: change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
 _REPEATS = 3e-14
+# accuracy: the same, relative to the largest residual: rounding of displacements, which large tensions make (seen: 15)
+_ROUNDED = 30.0
 # accuracy: changes over a cycle, over those that count as none, that are rounding where they have not fallen for so
 # many cycles
 _SMALL, _RESTLESS = 100.0, 8
@@ -20,10 +22,11 @@ _CLEAN = 0.1  # accuracy: of the last change: what the progression may leave une
 _STEADY = 0.3  # accuracy: of 1 - ratio: by how much the ratio may change from cycle to cycle
 
 
-def change(forces: Array, before: Array, near: Array, largest: float) -> float:
+def change(forces: Array, before: Array, near: Array, largest: float, off: float) -> float:
     """Change of the ``forces`` (n,) over a cycle from those ``before`` it, over what counts as none: ``near`` (n,), and
-    the rounding of the ``largest`` sum of forces, without sign, in the cycle."""
-    none = near + _REPEATS * largest
+    the rounding of the ``largest`` sum of forces, without sign, and of displacements, which leave the forces ``off``,
+    in the cycle."""
+    none = near + _REPEATS * largest + _ROUNDED * off
     return float(np.divide(np.abs(forces - before), none, out=np.zeros_like(none), where=none > 0).max())
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result.state import State
 from partialslip.scene import Scene
@@ -18,6 +19,8 @@ MOST_CYCLES = 200
 _SETTLED, _STILL = 5e-3, (1e-7, 1e-6)
 # accuracy: of the accuracy of a, m and n: the same under other loads; q may be off by 15 times that accuracy
 _SHARE = 0.5
+# limit: tension beside Q, in f P over the scene's length: zones that stick narrow with it, down to rounding
+_STRONGEST = 1e4
 _STAGES = 32  # accuracy: fewest stages of a leg that is followed event by event
 
 
@@ -107,9 +110,13 @@ class Path:
 
 def load_path(scene: Scene, plan: Plan, start: State | None = None, on_pin: bool = False) -> Path | None:
     """Scaled path of the loads of ``scene`` from ``start`` (default: zero load); None if ``plan`` has no friction.
-    ``on_pin``: whether a body is on a pin, so that its pressure varies with Q."""
+    ``on_pin``: whether a body is on a pin, so that its pressure varies with Q.
+
+    Raises InputError where the tension is too strong to be followed.
+    """
     if not plan.needs("friction"):
         return None
+    _check_tension(scene)
     P, load, A = scene.P, scene.load, scene.material.A
     begins = (start.Q, start.sigma, start.sigma_slope) if start else (0.0, 0.0, 0.0)
     L, unit, actuator = scene.length, P, None  # unit of Q or of the displacement
@@ -162,3 +169,14 @@ def stretched(x: Array, origin: float) -> Array:
 def lower_strain(scene: Scene, sigma: float) -> float:
     """Relative strain of the surfaces under the tension ``sigma`` (Pa) of a long lower body, scaled."""
     return scene.material.bodies[0].A / scene.material.A * sigma * scene.length / (4 * scene.P)
+
+
+def _check_tension(scene: Scene) -> None:
+    """Raise InputError for tension that makes the stick zone too narrow for cells and nodes."""
+    most = _STRONGEST * scene.friction.f * scene.P / scene.length
+    tension = max(map(abs, scene.load.sigma), default=0.0)
+    if tension > most and any(scene.load.driving):
+        given, allowed = (scene.units.labelled(value, "Pa", 3) for value in (tension, most))
+        raise InputError(
+            f"load.sigma = {given}: must be <= {allowed} beside Q, by march and fem: what sticks is too narrow"
+        )

@@ -433,7 +433,7 @@ class _Leg:
         rate, tableau = self._rate(), self._tableau
         rest = np.where(tableau.sticks, 0.0, self._p[:-1])
         off = np.abs(self._C @ rate - self._g - self._p[-1] - rest) / self._diagonal
-        if off.max() > _DRIFT * float(np.abs(rate).sum()):
+        if (off > np.maximum(_DRIFT * float(np.abs(rate).sum()), self._noise)).any():
             tableau.restart(np.flatnonzero(~tableau.sticks))
             self._solve()
             self._settle()
