@@ -237,7 +237,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
 
     def _check_pad(self, name: str, width: float, height: float) -> None:
         if not width <= 2 * self.profile.widest:
-            raise InputError(f"{name}.width = {width}: must be <= {2 * self.profile.widest} m, the profile's width")
+            raise InputError(f"{name}.width = {width}: must be <= {2 * self.profile.widest:g} m, the profile's width")
         if not (edge := float(self.profile.face_at(np.array(width / 2)))) <= STEEPEST * height:
             least = f"{edge / STEEPEST:g} m, as the face recedes by {edge:g} m"
             raise InputError(f"{name}.height = {height}: must be > {least}")
