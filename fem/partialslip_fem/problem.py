@@ -13,8 +13,8 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
+from partialslip.friction.even_gap import EvenGap, even_gap
 from partialslip.friction.load_path import Path, load_path, lower_strain, scaled_pressing
-from partialslip.friction.pressing import EvenGap, even_gap
 from partialslip.plan import Plan
 from partialslip.result.state import State
 from partialslip.scene import Friction, Profile, Scene

@@ -12,10 +12,11 @@ from partialslip.bars import BARS
 from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure, coupled, step_errors
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import Pivot, Relative
+from partialslip.friction.even_gap import PARABOLA
 from partialslip.friction.history import History, certified
 from partialslip.friction.load_path import Path, stretched
 from partialslip.friction.normal import Presses
-from partialslip.friction.pressing import PARABOLA, Pressed
+from partialslip.friction.pressing import Pressed
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import NEAREST, VERTICES, within
@@ -228,6 +229,7 @@ def _contact_forces(
             trail,
             means=partial(weighted_means, line),
             under=problem.even_gap or PARABOLA,
+            beta=problem.beta,
         )
         near = BARS["q"] * problem.accuracy
         pivot = None if problem.pin is None else Pivot(line.x, problem.pin, 0.0)

@@ -18,7 +18,8 @@ from partialslip import plan
 from partialslip.friction import coupled
 from partialslip.friction.coupled_step import LoadStep
 from partialslip.friction.coupled_step import solve as solve_step
-from partialslip.friction.pressing import EvenGap, FlatPunch, Punches
+from partialslip.friction.even_gap import EvenGap
+from partialslip.friction.pressing import FlatPunch, Punches
 from partialslip.halfplane.punch import Punch as Flats
 from partialslip.judge.means import norm_errors
 from partialslip_fem import solve, solving

@@ -7,12 +7,15 @@ import pytest
 from scipy.special import xlogy
 
 import partialslip
-from partialslip import load_scene
+from partialslip import load_scene, parse_scene
 from partialslip.friction import coupled
+from partialslip.friction.even_gap import PARABOLA, EvenGap
 from partialslip.judge.means import norm_errors
 from partialslip.march import punch_growth, unlike
 from partialslip.march.punch_growth import PunchGrowth, goodman_stick_zone, relative
 from partialslip.march.unlike import dundurs
+from partialslip.plan import plan
+from partialslip.result import Clock
 
 STEEL = ("material.upper.E=210e9", "material.upper.nu=0.3", "load.cycles=2")
 SHEARED = ("fem.accuracy=1e-2", *STEEL)
@@ -55,6 +58,49 @@ def test_stages_of_pressing_bear_their_load():
     normal, _ = punch.stage(np.array([at - h, at + h]))
     traction = 2 * at * (punch.normal[first:] @ -np.diff(inverse))  # 2 x times the integral of p_flat(s)/s^2
     assert (normal[0] - normal[1]) / (2 * h) == pytest.approx(traction, rel=1e-3)
+
+
+def test_stages_under_any_gap_are_those_under_a_parabola():
+    punch, x, reach = PunchGrowth.of(-0.1, 0.2), np.linspace(-1.1, 1.1, 45), 0.8
+    found = punch.stage_under(x, reach, PARABOLA.force(reach), PARABOLA.weighed(2.0))
+    for one, other in zip(found, punch.stage(x / reach), strict=True):
+        assert one == pytest.approx(other, abs=1e-9)
+
+
+def moved_on(pressed_by=0.6):
+    """By how much places that have stuck all along move along x while P grows from a part of it, relative to how far
+    they are moved: not at all, if stages of pressing are those of one history."""
+    data = {
+        "name": "pressed",
+        "material": {"upper": {"E": 2e11, "nu": 0.26}, "lower": {"E": 7e10, "nu": 0.04}},
+        "friction": {"f": 0.67},
+        "profile": {"kind": "flat-rounded", "R": 0.02, "b": 3.4e-4},
+        "load": {"P": 1e6},
+    }
+    last, first = (parse_scene(data | {"load": {"P": P}}) for P in (1e6, pressed_by * 1e6))
+    of_last, of_first = (unlike.UnlikeBodies(each, plan(each), None, Clock()) for each in (last, first))
+    coarse = of_last.solve(None, (1e-2, 0.2))
+    after = of_last.solve(coarse, (1e-3, 0.05))
+    cells = after.vertices * last.length
+    before = unlike._solve_on(of_first, of_first.path, cells / first.length, None, Clock())
+    moved = []
+    for scene, level in ((first, before), (last, after)):
+        forces = (level.pressed.normal.x, level.pressed.tangential.x)
+        moved.append(relative(level.vertices, of_last.beta).moved(*forces)[0] * scene.P * scene.material.A)
+    stuck = np.abs(cells[1:] + cells[:-1]) / 2 < 0.9 * before.stick.right * first.length
+    return np.linalg.norm((moved[1] - moved[0])[stuck]) / np.linalg.norm(moved[1][stuck])
+
+
+def test_places_that_stick_under_a_flat_with_rounded_corners_move_no_more():
+    assert moved_on() < 2.5e-3  # of first order in the cells
+
+
+@pytest.mark.fault
+def test_a_contact_that_grows_as_without_coupling_is_seen(monkeypatch):
+    """Deliberate fault: punches get the forces that close the gap of bodies that are not coupled. Both methods had
+    it."""
+    monkeypatch.setattr(EvenGap, "under", lambda gap, *_: gap)
+    assert moved_on() > 5e-3
 
 
 def middle(f):

@@ -12,9 +12,10 @@ from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import LoadStep, Pair, Pivot, Relative, solve_near
+from partialslip.friction.even_gap import PARABOLA, EvenGap
 from partialslip.friction.history import History, certified, follow, resting, still
 from partialslip.friction.load_path import Path
-from partialslip.friction.pressing import PARABOLA, EvenGap, FlatPunch, Pressed, Punches, Stages, disproportion
+from partialslip.friction.pressing import FlatPunch, Pressed, Punches, Stages, disproportion
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import CORNER
 
@@ -48,12 +49,12 @@ class Nodes:
     """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and ``ends(p, q,
     rise=...) -> (left, right)``, the ends of the contact under nodal forces along y and x, (n,) each. ``resultants(p,
     q) -> (points, normal, tangential)``: points (k,) within the contact, and the forces on their left, (k,) each;
-    needed without ``stages``. ``similar``: whether half-planes are pressed together under the even gap ``under``, so
-    that the contact grows in similar ways; ``stages`` gives them, by default from a flat punch on the nodes. ``sized``:
-    the same of like bodies of a size, nearly; ``nearly_similar``: of any bodies of a size, under a parabola. ``near``:
-    about the half-width.
-    ``trail``: where steps begin. ``means(forces)``: means over cells of the traction of nodal forces (n,), times the
-    roots of the cells' widths, (c,); by default each node has its own cell."""
+    needed without ``stages``. ``similar``: whether half-planes with Dundurs' ``beta`` are pressed together under the
+    even gap ``under``, so that the contact grows in similar ways; ``stages`` gives them, by default from a flat punch
+    on the nodes. ``sized``: the same of like bodies of a size, nearly; ``nearly_similar``: of any bodies of a size,
+    under a parabola. ``near``: about the half-width. ``trail``: where steps begin. ``means(forces)``: means over cells
+    of the traction of nodal forces (n,), times the roots of the cells' widths, (c,); by default each node has its own
+    cell."""
 
     x: Array
     weights: Array
@@ -67,6 +68,7 @@ class Nodes:
     stages: Stages | None = None
     means: Callable[[Array], Array] | None = None
     under: EvenGap = PARABOLA
+    beta: float = 0.0
 
     def half_width(self, forces: Pair) -> float:
         """Half-width of the contact under the ``forces``."""
@@ -213,19 +215,23 @@ def _similar(
         assert line.resultants
         points, *forces = line.resultants(p, q)
         between = left - vertex, right - vertex
-        return FlatPunch(
-            between, line.x, line.weights, (p, q), points - vertex, (forces[0], forces[1]), line.sized, line.under
-        )
+        left_of = forces[0], forces[1]
+        punch = FlatPunch(between, line.x, line.weights, (p, q), points - vertex, left_of, line.sized, line.under)
+        if line.sized or line.under.parabolic:
+            return punch
+        pushes = float(f.max()) * abs(line.beta)
+        return replace(punch, gap=line.under.under(*punch.beyond(pushes), pushes))
 
-    reach, count, unlike = line.near or line.half_width(first), 1, 0.0
+    reach, count, unlike, tried = line.near or line.half_width(first), 1, 0.0, list[Mask]()
     while True:
-        covered = _covered(line, reach)
+        tried.append(covered := _covered(line, reach))
         if not covered.any():  # the contact is elsewhere than where the gap is smallest
             return None
         stages = line.stages or from_a_punch(reach)
         last, reach, left, pressed = _settled(line, reach, accuracy, partial(press, stages, stages.last / 2))
         count += pressed + (line.stages is None)
-        if line.stages or count >= _MOST or np.array_equal(_covered(line, reach), covered):
+        covered = _covered(line, reach)  # two punches may each lead to the other
+        if line.stages or count >= _MOST or any(np.array_equal(covered, each) for each in tried):
             break
     growth = stages.growth(reach)
     if line.sized:

@@ -34,14 +34,15 @@ follows from the gap, which the displacements along y close in the same way.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
+from scipy.special import hyp2f1
 
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
+from partialslip.friction.even_gap import PARABOLA, EvenGap
 from partialslip.friction.zone_ends import StickInterval
-from partialslip.scene import Hertz, Scene
 
 _STICKS = 1e-9  # accuracy: relative tolerance of the friction bound
 _TELLING = 1e-9  # accuracy: tolerance of lengths, relative to the half-width
@@ -50,6 +51,7 @@ _POINTS, _WEIGHTS = (np.polynomial.legendre.leggauss(16) + np.array([[1.0], [0.0
 # 1.5e-4 where slip leaves kinks)
 _STAGES, _BY_STAGE = (np.polynomial.legendre.leggauss(128) + np.array([[1.0], [0.0]])) / 2
 _NEAR, _SOME = 1.05, 64  # accuracy: nodes that matter, in half-widths of the contact; how many are enough for the gap
+_ROOTS = np.linspace(0.0, 1.0, 401)  # accuracy: roots of angles up to the corner of a flat punch
 _FAR = np.geomspace(1.01, 1e3, 40)  # beyond the last node, in its distance
 _CLOSED = 0.98  # accuracy: nodes that are certainly closed, in half-widths of the contact
 _INNER = 0.8  # accuracy: the same, where the slope at the last node begins
@@ -101,46 +103,6 @@ class Stages(Protocol):
         contact, which belongs to the force 1."""
 
 
-class EvenGap(NamedTuple):
-    """Convex even gap whose curvature gains the ``steps`` (k,) at |x| = ``places`` (k,), ascending, in any units."""
-
-    places: Array
-    steps: Array
-
-    @property
-    def parabolic(self) -> bool:
-        """Whether the gap is a parabola."""
-        return len(self.places) == 1 and not self.places[0]
-
-    def force(self, half_width: float) -> float:
-        """Force that presses half-planes together up to the ``half_width``, in a unit of its own."""
-        psi = np.arccos(np.minimum(self.places / half_width, 1.0))
-        return float(half_width**2 * (self.steps @ (2 * psi - np.sin(2 * psi)))) / 4
-
-    def rate(self, half_widths: Array) -> Array:
-        """Derivative of the force with the half-width, at ``half_widths`` of any shape."""
-        total = np.zeros_like(half_widths)
-        for place, step in zip(self.places.tolist(), self.steps.tolist(), strict=True):
-            total += step * np.arccos(np.minimum(place / half_widths, 1.0))
-        return half_widths * total
-
-
-PARABOLA = EvenGap(np.zeros(1), np.ones(1))
-
-
-def even_gap(scene: Scene, length: float) -> EvenGap | None:
-    """Return the curvature of the gap of ``scene``, lengths in ``length``, m; None if the contact does not grow with P
-    alone, with one f, in a convex even gap."""
-    if not scene.even or scene.presses_anew or scene.friction.varies:
-        return None
-    if isinstance(scene.profile, Hertz):
-        return PARABOLA
-    if (scene.profile.curvature.values < 0).any():
-        return None
-    places, steps = scene.profile.curvature_steps()
-    return EvenGap(places / length, steps)
-
-
 @dataclass(frozen=True)
 class FlatPunch:
     """Flat punch under the force 1, on nodes, of bodies that are pressed together under an even gap.
@@ -180,6 +142,21 @@ class FlatPunch:
     def half_width(self) -> float:
         """Half of the distance of the corners."""
         return (self.corners[1] - self.corners[0]) / 2
+
+    def beyond(self, pushes: float) -> tuple[Array, Array]:
+        """Ends of cells from the middle, 0, to the corner, 1, and the forces along y on these, the means of both sides,
+        for f times the size of Dundurs' beta ``pushes``: near corners p has the power -1/2 + arctan(pushes)/pi."""
+
+        def even(t: Array) -> Array:  # the integral of (1 - t^2) to that power: forces are nearly linear in it
+            return np.asarray(t * hyp2f1(0.5, 0.5 - np.arctan(pushes) / np.pi, 1.5, t**2), float)
+
+        ends = np.sin(np.pi / 2 * (1 - _ROOTS[::-1] ** 2))
+        at = (self.points - sum(self.corners) / 2) / self.half_width
+        known, total = np.abs(at) < 1, float(self.forces[0].sum())
+        own = even(np.concatenate([[-1.0], at[known], [1.0]]))
+        left = np.concatenate([[0.0], self.left[0][known], [total]])
+        both = (np.interp(even(ends), own, left) - np.interp(-even(ends), own, left)) / 2
+        return ends, np.diff(both)
 
     def growth(self, _: float, /) -> tuple[Array, Array]:
         """As of :class:`Stages`: the forces, as the punch has about the half-width."""

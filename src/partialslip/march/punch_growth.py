@@ -1,10 +1,12 @@
-"""Unlike half-planes that are pressed together under a parabola: the flat punch with friction from which all stages are
-made (:mod:`partialslip.friction.pressing`), on cells of its own.
+"""Unlike half-planes that are pressed together under an even gap: the flat punch with friction that all stages are made
+from (:mod:`partialslip.friction.pressing`), on cells of its own.
 
 Scaled: lengths by the punch's half-width, forces by its force, displacements by A times the force.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize import brentq
@@ -12,6 +14,7 @@ from scipy.special import ellipk, ellipkm1
 
 from partialslip.arrays import Array
 from partialslip.friction.coupled_step import Relative, punched
+from partialslip.friction.even_gap import EvenGap
 from partialslip.friction.zone_ends import read_stick_zone
 from partialslip.march.cells import compliance, graded_cells
 
@@ -105,6 +108,21 @@ class PunchGrowth:
             found.append(rest + sums[cell + 1] - at**2 * moments[cell + 1])
         return _both_sides(x, *found)
 
+    def stage_under(
+        self, x: Array, reach: float, force: float, weighed: Callable[[Array], Array]
+    ) -> tuple[Array, Array]:
+        """The same at ``x`` (k,) under another even gap, whose contact has the half-width ``reach`` under the ``force``
+        P, over P: int r(x/s) P'(s) ds of the punch's resultants r is P r(x/reach) - x int t(s) P(x/s) ds by parts, and
+        the latter is known cell by cell from ``weighed``, the integral of P(s)/s^2
+        (:meth:`partialslip.friction.even_gap.EvenGap.weighed`)."""
+        at, widths = np.minimum(np.abs(x), reach), np.diff(self.vertices)
+        s = np.full((len(x), len(self.vertices)), reach)
+        np.divide(at[:, None], self.vertices, out=s, where=self.vertices > 0)
+        grown = -np.diff(weighed(np.minimum(s, reach)), axis=1) / force
+        tractions = zip((self.normal, self.tangential), self._sums(widths), strict=True)
+        beyond = (np.interp(at / reach, self.vertices, sums) - at * (grown @ each) for each, sums in tractions)
+        return _both_sides(x, *beyond)
+
     def _sums(self, weights: Array) -> list[Array]:
         """Sums of the tractions times ``weights`` (c,) over all cells beyond each of the ``vertices``."""
         return [np.append(np.cumsum((weights * each)[::-1])[::-1], 0.0) for each in (self.normal, self.tangential)]
@@ -112,11 +130,16 @@ class PunchGrowth:
 
 @dataclass(frozen=True)
 class OnCells:
-    """Stages of pressing as forces on the cells between ``vertices`` (c + 1,)."""
+    """Stages of pressing under an even ``gap`` as forces on the cells between ``vertices`` (c + 1,)."""
 
     punch: PunchGrowth
     vertices: Array
+    gap: EvenGap
     last: float = 1e-4  # last step of pressing, in half-widths: stages are as exact as cells are
+
+    @cached_property
+    def _weighed(self) -> Callable[[Array], Array]:
+        return self.gap.weighed(float(np.abs(self.vertices).max()))
 
     def growth(self, half_width: float, /) -> tuple[Array, Array]:
         """As of :class:`partialslip.friction.pressing.Stages`."""
@@ -125,8 +148,16 @@ class OnCells:
 
     def stage(self, half_width: float, share: float) -> tuple[Array, Array]:
         """As of :class:`partialslip.friction.pressing.Stages`."""
-        p, q = self.punch.stage(self.vertices / (half_width * share))
-        return -np.diff(p) * share**2, -np.diff(q) * share**2
+        reach = half_width * share
+        if self.gap.parabolic:
+            p, q = self.punch.stage(self.vertices / reach)
+            return -np.diff(p) * share**2, -np.diff(q) * share**2
+        if reach <= self.gap.places[0]:  # a flat that bears nothing yet
+            return 0 * self.vertices[1:], 0 * self.vertices[1:]
+        force = self.gap.force(reach)
+        p, q = self.punch.stage_under(self.vertices, reach, force, self._weighed)
+        borne = force / self.gap.force(half_width)
+        return -np.diff(p) * borne, -np.diff(q) * borne
 
 
 def _both_sides(x: Array, normal: Array, tangential: Array) -> tuple[Array, Array]:

@@ -14,10 +14,11 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction import coupled
 from partialslip.friction.active_set import Solution, spread
+from partialslip.friction.even_gap import PARABOLA, even_gap
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.normal import press
-from partialslip.friction.pressing import Pressed, even_gap
+from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import steady_state, steps_of_coupled
 from partialslip.friction.step_errors import along_path, other_steps, pressed_together, summed
 from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, read_stick_zone, within
@@ -84,10 +85,10 @@ class UnlikeLevel(driver.Level):
 
 
 class UnlikeBodies(driver.Problem[UnlikeLevel]):
-    """Half-planes of unlike materials, for :func:`partialslip.march.driver.march`: ``beta``, zero without coupling, the
-    flat ``punch`` as which the contact grows under an even gap, and whether it is ``similar`` at all stages, under a
-    parabola. ``followed`` are the errors of the load steps, on the first cells that are not coarse. Twice as many steps
-    would cost twice as much on these and all finer cells: they stay as asked for."""
+    """Half-planes of unlike materials, for :func:`partialslip.march.driver.march`: ``beta``, zero without coupling, and
+    the flat ``punch`` as which the contact grows under an even ``gap``, if it is one. ``followed`` are the errors of
+    the load steps, on the first cells that are not coarse. Twice as many steps would cost twice as much on these and
+    all finer cells: they stay as asked for."""
 
     telling = ("a",)
     steps_count = False  # they are as asked for
@@ -95,9 +96,12 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock) -> None:
         super().__init__(scene, start, clock, load_path(scene, plan, start), (scene.origin, scene.length), _MESHES)
         self.beta = dundurs(scene) if plan.needs("coupling") and plan.needs("friction") else 0.0
-        gap = None if start else even_gap(scene, self.length)
-        self.punch = PunchGrowth.of(self.beta, scene.friction.f) if self.beta and gap else None
-        self.similar = self.punch is not None and gap is not None and gap.parabolic
+        self.gap = None if start else even_gap(scene, self.length)
+        self.punch = PunchGrowth.of(self.beta, scene.friction.f) if self.beta and self.gap else None
+        if self.punch and self.gap and not self.gap.parabolic:
+            ends = self.punch.vertices
+            pushes = scene.friction.f * abs(self.beta)
+            self.gap = self.gap.under(ends, self.punch.normal * np.diff(ends), pushes)
         self.width = _extent(scene)
         self.followed: Errors = {}
 
@@ -176,7 +180,7 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
             a = max(level.a)
             fine, inner = apart(level.fine, _SMALLEST * a), [*level.kinks]
         inner += [(kink - self.scene.origin) / self.scene.length for kink in self.scene.profile.kinks]
-        inner += [0.0] if self.similar else []  # where the surfaces touch first, q/p is x ln|x|
+        inner += [0.0] if self.punch and self.gap and self.gap.parabolic else []  # there q/p is x ln|x|
         ends = np.sort(fine)
         gaps = np.diff(ends)
         gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps)) / a
@@ -219,8 +223,9 @@ def _solve_on(
             places = vertices * L + scene.origin
             begins, shear = (on_cells(each, places) / scene.P for each in (problem.start.p, problem.start.q))
             path = replace(path, before=shear)
-        stages = OnCells(problem.punch, vertices) if problem.punch and problem.similar else None
-        line = coupled.Nodes(x, widths, ends, None, problem.similar, near=near, stages=stages)
+        under = problem.gap or PARABOLA
+        stages = OnCells(problem.punch, vertices, under) if problem.punch else None
+        line = coupled.Nodes(x, widths, ends, None, stages is not None, near=near, stages=stages, under=under)
         moved = stretched(x, scene.origin / L)
         stretch, allowed = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
         f = scene.friction.at(x * L + scene.origin)
