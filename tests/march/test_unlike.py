@@ -103,6 +103,28 @@ def test_a_contact_that_grows_as_without_coupling_is_seen(monkeypatch):
     assert moved_on() > 5e-3
 
 
+@pytest.mark.parametrize("f", [1e-6, 0.01])
+def test_a_contact_that_hardly_sticks_is_pressed(f):
+    """The punch's stick zone is narrower than a cell, and with it that of the contact."""
+    found = solved(f"friction.f={f}", "load.Q=[0, 0]")
+    assert 0 <= found.m < 1e-2 * found.a
+    assert found.m == pytest.approx(found.n, abs=1e-3 * found.a)
+
+
+def test_where_hardly_anything_slips_growth_is_less_well_known():
+    """Ends that slip have a power of their own; where they are narrow, the gap is closed as they let it, and q is known
+    to that part of it."""
+    known = {f: EvenGap(np.ones(1), np.ones(1)) for f in (0.67, 2.0)}
+    for f, gap in known.items():
+        punch = PunchGrowth.of(-0.28, f)
+        known[f] = gap.under(punch.vertices, punch.normal * np.diff(punch.vertices), 0.28 * f).off
+    assert known[0.67] < 2e-4
+    assert known[2.0] > 1e-2
+    scene = load_scene("hertz-shear", [*SHEARED, "load.Q=[0, 0]", "friction.f=2", "material.nu=0.0"])
+    flat = scene.replace(profile={"kind": "flat-rounded", "R": 0.05, "b": 3e-4}, load={"p0": None, "P": scene.P})
+    assert partialslip.run(flat, "march")["march"].estimate["q1"] > 1e-2
+
+
 def middle(f):
     """Pressure of a stage of pressing at x = 0, where the bodies touched first."""
     normal, _ = PunchGrowth.of(-0.114, f).stage(np.array([-1e-3, 1e-3]))

@@ -28,6 +28,9 @@ _PUNCHES = np.array([1.0, 0.5, 0.25])  # half-widths of flat punches on bodies o
 HALF = 0.5  # accuracy: half-width of a second punch that tells how similar like bodies of a size are, in the first's
 _ROUGH = 0.1  # accuracy: largest error of q for which punches are used
 _SETTLED = 0.03  # accuracy: error of the half-width that is left, in the tolerance of the ends
+# accuracy: error of the half-width over what punches leave of the gap (measured: 2e-3 to 1e-2); q is off by less than
+# that part (0.1)
+_OF_LAW = 0.01
 _FAR = 10.0  # accuracy: gap, in half-widths, that stays open
 _ENDS = 15.0  # accuracy: tolerance of q over tolerance of the ends
 _MOST, _WORK = 64, 16_000  # limit: steps of pressing, and of steps times nodes
@@ -241,7 +244,8 @@ def _similar(
         if (unlike := disproportion(line.x, growth, (half[0].x, half[1].x))) > _ROUGH:
             return None
     rough = press(stages, stages.last, reach)
-    errors = {"q": off(last[1].x, rough[1].x) + unlike, "a": _moved(line, last, rough) + left}
+    law = stages.gap.off
+    errors = {"q": off(last[1].x, rough[1].x) + unlike + law, "a": _moved(line, last, rough) + left + _OF_LAW * law}
     corners = None if line.stages else line.ends(*growth, rise=CORNER)
     return Pressed(*_certified([last]), count + 1 + line.sized, errors, growth, f, corners)
 

@@ -20,7 +20,8 @@ and only the force P(s) of the half-width s differs:
 
     q(x) = int_x^a q_flat(x/s) P'(s) ds / s,    of like bodies of a size q_flat(x/s) P'(s) ds / a,
 
-where a step w of the gap's curvature at |x| = b adds w s arccos(b/s) to P'(s), as on half-planes.
+where a step w of the gap's curvature at |x| = b adds w s arccos(b/s) to P'(s), as on half-planes of like materials; of
+unlike ones see :mod:`partialslip.friction.even_gap`.
 
 In other bodies of a size the stages are nearly similar: what a punch
 does at x/s depends on (s/W)^2, W being the size. What counts of an earlier stage are the displacements at which points
@@ -93,6 +94,10 @@ class Stages(Protocol):
     @property
     def last(self) -> float:
         """Last step of pressing, in half-widths."""
+
+    @property
+    def gap(self) -> EvenGap:
+        """The gap, and how well the punches' forces close it."""
 
     def growth(self, half_width: float, /) -> tuple[Array, Array]:
         """Nodal forces along y and x (n,) under the flat punch of ``half_width`` and the force 1: the increments of

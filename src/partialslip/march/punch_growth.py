@@ -51,7 +51,9 @@ def goodman_stick_zone(ratio: float) -> float:
 
     if ratio > 8:
         return 1.0
-    return float(1 - np.exp(brentq(off, -30.0, -1e-12)))
+    if off(widest := np.log1p(-_END)) > 0:  # c is less than a cell
+        return 0.0
+    return float(1 - np.exp(brentq(off, -30.0, widest)))
 
 
 @dataclass(frozen=True)
