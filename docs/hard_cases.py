@@ -16,6 +16,7 @@ from partialslip.scene import Scene
 from partialslip.verify import FAMILIES
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.catalogue import catalogue_page
+from partialslip.verify.hard_cases.scenes import YOUNG
 
 DOCS = Path(__file__).parent
 MEASURED = DOCS.parent / "benchmarks" / "hard_cases.csv"
@@ -24,8 +25,9 @@ COLUMNS = ("case", "method", "a", "m", "n", "p", "q", "certificate", "cpu_s", "m
 _TOLD = """\
 One run of `partialslip verify --suite full` on a busy machine with two cores ({machine}), {date}; other work made its
 CPU seconds longer. *Q_f* is dQ/(2 f P) and *s_f* is dsigma/(f p0), with the larger P where P varies and the largest f
-where f varies; both have a sign. The half-width of the contact is 1 mm, E is 72.8 GPa. The profile is Hertz, or a flat
-of half-width b with round corners. *m* and *n* are errors against the reference, in a; the method without errors is the
+where f varies; both have a sign. The half-width of the contact is 1 mm, E is 72.8 GPa; of unlike bodies that is so
+without friction, and of like bodies of as much compliance. The profile is Hertz, or a flat of half-width b with round
+corners. *m* and *n* are errors against the reference, in a; the method without errors is the
 reference. A dash: not judged, no such quantity, or not in the run. CPU seconds are those of the solution, without the
 start of the process. The largest residual of all certificates in the run is {certificate:.0e}; the bar is 1e-7.
 """
@@ -61,7 +63,9 @@ def _lines(case: Case, rows: Mapping[tuple[str, str], Mapping[str, str]]) -> Ite
 
 def _loads(scene: Scene) -> list[str]:
     """Q_f, s_f, f, nu, profile of ``scene``, and what else is special of it."""
-    pressed, load, f = contact(scene), scene.load, scene.friction.f
+    material, load, f = scene.material, scene.load, scene.friction.f
+    alike = scene if material.alike else scene.replace(material={"upper": None, "lower": None, "E": YOUNG, "nu": 0.3})
+    pressed = contact(alike)
     Q, sigma = np.array(load.Q or (0.0, 0.0)) / (f * pressed.P), np.array(load.sigma) / (f * pressed.p0)
     share, tension, mean_Q, mean_sigma = (Q[1] - Q[0]) / 2, sigma[1] - sigma[0], Q.mean(), sigma.mean()
     more = []
@@ -74,14 +78,18 @@ def _loads(scene: Scene) -> list[str]:
     if np.size(load.e) > 1:
         more.append(f"e of {max(load.e) / pressed.a:.3g} a")
     more += _rig(scene)
+    own = [body for body in (material.upper, material.lower) if body]
+    if own:
+        more.append(" on ".join(f"{body.E / 1e9:g}" for body in own) + " GPa")
     if scene.fem.size:
         more.append(f"elements {scene.fem.size:g} a")
     near = "found" if load.displacement is not None else f"1 - {1 - share:.0e}" if 0.99 < share < 1 else f"{share:.3g}"
     given = scene.friction.given
     frictions = ", ".join(f"{each:g}" for each in given) if isinstance(given, tuple) else f"{given:g}"
+    nus = ", ".join(f"{body.nu:g}" for body in own or [material])
     b = getattr(scene.profile, "b", None)
     profile = f"flat, b = {b / pressed.a:.4g} a" if b else "Hertz"
-    return [near, f"{tension:.4g}", frictions, f"{scene.material.nu:g}", profile, "; ".join(more)]
+    return [near, f"{tension:.4g}", frictions, nus, profile, "; ".join(more)]
 
 
 def _rig(scene: Scene) -> Iterable[str]:

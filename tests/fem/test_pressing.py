@@ -401,3 +401,21 @@ def test_a_pad_that_slips_while_it_is_pressed_goes_step_by_step():
     assert result.m < 0.4 * result.a
     assert np.abs(q[PARTS > 0.4]) == pytest.approx(0.3 * result.traction.at(PARTS[PARTS > 0.4] * result.a).p, rel=0.01)
     assert result.estimate["q1"] < 0.05
+
+
+@pytest.mark.slow
+def test_a_cycle_after_a_flat_was_pressed_agrees_with_the_march():
+    """Q moves the stick zone into the shear that pressing locked in, whose small errors it enlarges tenfold."""
+    unlike = {"upper": {"E": 210e9, "nu": 0.3}, "lower": {"E": 48e9, "nu": 0.1}}
+    data = {
+        "name": "flat-on-an-unlike-body",
+        "material": unlike,
+        "profile": {"kind": "flat-rounded", "R": 0.05, "b": 5e-4},
+        "friction": {"f": 0.67},
+        "load": {"P": 2.45e5, "Q": [-6.6e4, 6.6e4]},
+        "fem": {"accuracy": 1e-3},
+    }
+    found = partialslip.run(partialslip.parse_scene(data), ["march", "fem"]).results
+    off = norm_errors(found["fem"].traction, found["march"].traction, 0.67, ("q1", "q2"))
+    for key, error in off.items():
+        assert error < found["fem"].estimate[key] + found["march"].estimate[key] < 6e-3

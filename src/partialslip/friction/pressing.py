@@ -38,6 +38,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 from scipy.special import hyp2f1
 
 from partialslip.arrays import Array, Mask
@@ -189,16 +190,16 @@ class FlatPunch:
         at = (self.points - sum(self.corners) / 2) / self.half_width
         known = np.abs(at) < 1
         angle = np.concatenate([[-np.pi / 2], np.arcsin(at[known]), [np.pi / 2]])
-        density = np.diff(np.concatenate([[0.0], left[known], [total]])) / np.diff(angle)
+        # between points the force must be what it is: interpolated tractions leave shear of the same sign all along
+        by_angle = PchipInterpolator(angle, np.concatenate([[0.0], left[known], [total]])).derivative()
         inside = np.abs(self.x) < reach
         x = self.x[inside, None]
         first, last = (np.sqrt(np.maximum(end**2 - x**2, 0.0)) for end in (self.gap.places[0], reach))
         w = first + (last - first) * _STAGES**2
         s = np.hypot(x, w)
-        by_angle = np.interp(np.arctan2(x, w), (angle[1:] + angle[:-1]) / 2, density)
         weights = 2 * (last - first) * _STAGES * _BY_STAGE
         result = np.zeros(len(self.x))
-        result[inside] = (by_angle * self.gap.rate(s) / (over or s) * weights).sum(axis=-1)
+        result[inside] = (by_angle(np.arctan2(x, w)) * self.gap.rate(s) / (over or s) * weights).sum(axis=-1)
         return result
 
     def _summed(self, x: Array, total: float, left: Array) -> Array:

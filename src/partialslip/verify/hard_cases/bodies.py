@@ -1,9 +1,13 @@
 """Hard cases: materials, friction and profiles."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from partialslip.verify.case import Case
-from partialslip.verify.hard_cases.scenes import family, hard_scene
+from partialslip.verify.hard_cases.scenes import MANY_CYCLES, family, hard_scene
+
+# limit: unlike bodies with the mean compliance of the other cases, whose Dundurs' constant beta is 0.3
+_UNLIKE: Mapping[str, Any] = {"upper": {"E": 210e9, "nu": 0.3}, "lower": {"E": 48e9, "nu": 0.1}}
 
 
 @family(
@@ -46,3 +50,22 @@ numbers.
 def sharp() -> Iterator[Case]:
     for flat in (0.9, 0.99, 0.999):
         yield Case(f"sharp-{flat:g}", hard_scene(f"sharp-{flat:g}", 0.4, 4.0, flat=flat))
+
+
+@family(
+    "Unlike bodies that are pressed together from a flat",
+    """
+Between unlike bodies pressing alone moves the surfaces along x, friction resists, and points lock in shear as they
+come into contact. The contact of a cylinder grows at one and the same ratio of stick zone to contact, which some codes
+use. That of a flat with round corners does not: it begins with the whole flat at once. Load steps then lock in shear
+that depends on their number: eight left q1 off by 0.6. What the locked in shear opens beside the flat differs from
+what it is without friction, by 6 % in the second case. In the first one friction is weak and the flat long, in the
+last one the flat is short. There is no exact solution: the march is the reference, which shares with finite elements
+how the contact grows, but no mesh. The accuracy is 1e-3.
+""",
+)
+def unlike_punches() -> Iterator[Case]:
+    for f, flat in ((0.1, 0.9), (0.67, 0.5), (0.3, 0.1)):
+        name = f"unlike-flat-{flat:g}"
+        scene = hard_scene(name, 0.4, 0.5, f=f, flat=flat, fem=MANY_CYCLES, material=_UNLIKE)
+        yield Case(name, scene, ("march", "fem"), reference="march")

@@ -39,6 +39,7 @@ FAMILIES: tuple[Family, ...] = (  # in the order of the page
     bodies.poisson,
     bodies.friction,
     bodies.sharp,
+    bodies.unlike_punches,
     histories.mean_loads,
     histories.cycles,
     histories.varying_pressure,

@@ -47,6 +47,8 @@ def family(title: str, hard: str) -> Callable[[Callable[[], Iterator[Case]]], Fa
 MANY_STEPS: Mapping[str, Any] = {"accuracy": 1e-2}
 MANY_CYCLES: Mapping[str, Any] = {"accuracy": 1e-3}
 
+YOUNG = 72.8e9  # limit: Young's modulus, Pa
+
 PEAKS = {
     f"{method}.q": Bar(0.15, "a peak at either end is narrower than an element, and q is as small as the load")
     for method in ("march", "fem")
@@ -66,16 +68,17 @@ def hard_scene(
     load: Mapping[str, Any] | None = None,
     fem: Mapping[str, Any] | None = None,
     bodies: Mapping[str, Any] | None = None,
+    material: Mapping[str, Any] | None = None,
 ) -> Scene:
     """Return a scene with a contact half-width of 1 mm.
 
     dQ = ``Qf`` 2 f P, dsigma = ``sf`` f p0; the means are in f P and f p0. ``flat`` is b/a, 0 for Hertz. A displacement
-    in ``load`` takes the place of Q.
+    in ``load`` takes the place of Q, and ``material`` that of the bodies to which the loads belong.
     """
     a, R = 1e-3, 0.05
     data: dict[str, Any] = {
         "name": name,
-        "material": {"E": 72.8e9, "nu": nu},
+        "material": {"E": YOUNG, "nu": nu},
         "friction": {"f": f},
         "profile": {"kind": "hertz", "R": R},
         "load": {"a": a},
@@ -94,5 +97,5 @@ def hard_scene(
     }
     if "displacement" in data["load"]:
         del data["load"]["Q"]
-    more = {key: dict(each) for key, each in (("fem", fem), ("bodies", bodies)) if each}
+    more = {key: dict(each) for key, each in (("fem", fem), ("bodies", bodies), ("material", material)) if each}
     return parse_scene(data | more)
