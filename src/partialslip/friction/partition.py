@@ -15,6 +15,7 @@ from partialslip.arrays import Array, Indices, Mask, submatrix
 from partialslip.friction.active_set import Sides
 
 _KEPT = 2  # cost: factors
+_TAILS = 3  # cost: products of their last rows
 _PAYS = 0.7  # cost: of the unknowns without a factor: a system with more is better solved directly
 _COST = 6.0  # cost: of a factor of n nodes, as a multiple of the cost of a system of n unknowns
 _EVEN = 0.45  # cost: of the nodes that stick: so many on the shorter side of the middle are about half of them
@@ -83,7 +84,7 @@ class Nested:
         self._C, n = C, len(C.yy)
         self.order: Indices = np.argsort(np.abs(np.arange(n) - middle), kind="stable")
         self.L, self.by_rigid = np.empty((0, 0)), np.empty((0, 2))
-        self._tail: tuple[int, Array] = 0, np.empty((0, 0))
+        self._tails = list[tuple[int, Array]]()
         self._loaded: tuple[Array, Array] = np.empty((2, 0)), np.empty(0)
 
     def core(self, sticks: Mask) -> int:
@@ -134,12 +135,14 @@ class Nested:
     def tail(self, core: int, count: int) -> tuple[int, Array]:
         """How many of the first ``core`` nodes are eliminated, and the compliances of those that follow, up to
         ``count`` nodes at least."""
-        begin, matrix = self._tail
-        if not begin <= core <= begin + _SLACK * (count - begin) or len(matrix) < 2 * (count - begin):
-            begin = max(core - int(_SLACK / 3 * (count - core)) - 1, 0)
-            rows = self.L[2 * begin : 2 * count, 2 * begin : 2 * count]
-            self._tail = begin, rows @ rows.T
-        return self._tail
+        for begin, matrix in self._tails:
+            if begin <= core <= begin + _SLACK * (count - begin) and len(matrix) >= 2 * (count - begin):
+                return begin, matrix
+        begin = max(core - int(_SLACK / 3 * (count - core)) - 1, 0)
+        end = min(int(_ROOM * count) + 2, len(self.L) // 2)
+        found = begin, _by_its_transpose(self.L[2 * begin : 2 * end, 2 * begin : 2 * end])
+        self._tails = [found, *self._tails[: _TAILS - 1]]
+        return found
 
 
 class Partition:
@@ -194,6 +197,15 @@ def _middle(touch: Mask, first: int, last: int) -> int:
     ends = np.flatnonzero(touch)[[0, -1]]
     middle = int(ends.sum()) // 2
     return middle if min(middle - first, last - 1 - middle) > _EVEN * (last - first) else (first + last - 1) // 2
+
+
+def _by_its_transpose(L: Array) -> Array:
+    """L L^T of a lower triangular matrix."""
+    upper = np.asfortranarray(L[::-1, ::-1])  # LAPACK has U U^T of an upper one
+    product, _ = la.lapack.dlauum(upper, lower=False, overwrite_c=True)
+    whole: Array = product + product.T
+    np.fill_diagonal(whole, product.diagonal())
+    return whole[::-1, ::-1]
 
 
 def _leading(mask: Mask) -> int:
