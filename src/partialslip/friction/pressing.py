@@ -51,7 +51,7 @@ _TELLING = 1e-9  # accuracy: tolerance of lengths, relative to the half-width
 _POINTS, _WEIGHTS = (np.polynomial.legendre.leggauss(16) + np.array([[1.0], [0.0]])) / 2
 # accuracy: points between the half-widths at which a place is covered first and last (measured: q is off by 1e-8, by
 # 1.5e-4 where slip leaves kinks)
-_STAGES, _BY_STAGE = (np.polynomial.legendre.leggauss(128) + np.array([[1.0], [0.0]])) / 2
+_STAGES, _BY_STAGE = (np.polynomial.legendre.leggauss(256) + np.array([[1.0], [0.0]])) / 2
 _NEAR, _SOME = 1.05, 64  # accuracy: nodes that matter, in half-widths of the contact; how many are enough for the gap
 _ROOTS = np.linspace(0.0, 1.0, 401)  # accuracy: roots of angles up to the corner of a flat punch
 _FAR = np.geomspace(1.01, 1e3, 40)  # beyond the last node, in its distance
