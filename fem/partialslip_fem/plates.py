@@ -47,10 +47,11 @@ def plates_of(problem: Problem, solution: MeshSolution) -> Plates | None:
 def compliance_error(problem: Problem, solution: MeshSolution, other: MeshSolution, of_ends: float) -> float | None:
     """Error of the plates' compliance by ``solution``, relative; None if it has no plates.
 
-    Two independent parts, as root of the sum of squares. Bodies that stick on the same elements are compared with those
-    of the ``other`` solution, whose elements are of another order: errors of singular corners fall with the order k
-    like k^(-4 e), with the exponent e of the displacements there. The ends of what sticks are known to the distance of
-    the next node, and to the error ``of_ends`` (in contact half-widths) of the contact.
+    Two independent parts, as root of the sum of squares. Bodies that stick on the same elements are compared with
+    those of the ``other`` solution, whose elements are of another order: errors of singular corners fall with the
+    order k like k^(-4 e), with the exponent e of the displacements there. What sticks ends somewhere between the last
+    node and the next, and so does the contact: they are apart by its distance from the farther of both nodes, and by
+    the error ``of_ends`` (in contact half-widths) of the contact.
     """
     C, D = solution.relative, other.relative
     if not C or not D or not solution.history:
@@ -64,8 +65,12 @@ def compliance_error(problem: Problem, solution: MeshSolution, other: MeshSoluti
     changed = np.abs(compliance - _stuck(D, other.lower.x, across, problem.pin)).max() / unit
     exponents = [exponent for part in problem.parts for exponent in part.exponents.values()]
     elements = _SAFE * changed / abs(1 - (k / j) ** (4 * min(exponents, default=1.0)))
-    spacing = max(x[first] - x[first - 1], x[last + 1] - x[last]) / ((x[last] - x[first]) / 2)
-    return math.hypot(elements, np.abs(by_width).max() / unit * (spacing + of_ends))
+    nodes, ends = (
+        np.array([[x[first], x[first - 1]], [x[last], x[last + 1]]]),
+        np.array([[solution.left], [solution.right]]),
+    )
+    apart = float(np.abs(nodes - ends).max(axis=1).sum()) / (x[last] - x[first])
+    return math.hypot(elements, np.abs(by_width).max() / unit * (apart + of_ends))
 
 
 def displacement_error(solution: MeshSolution, plates: Plates, of_compliance: float | None) -> float | None:

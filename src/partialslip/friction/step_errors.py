@@ -110,16 +110,15 @@ def summed(*errors: Mapping[str, float]) -> Errors:
 
 
 def pressed_together(history: History, pressed: Pressed, weights: Array, nodes: Indices) -> Errors:
-    """Errors of a, left and right (in half-widths), q1 and q2 (relative L2) of coupled bodies ``pressed`` together in
-    steps: an error of q at the end of pressing may persist. The stick zone of bodies that are only pressed is a part of
-    the contact and ends as badly known. ``weights`` turn tractions at all nodes of the contact line into forces;
-    ``nodes`` are the indices of the nodes of ``history``."""
+    """Errors of a, left, right, m and n (in half-widths), q1 and q2 (relative L2) of coupled bodies ``pressed``
+    together in steps: an error of q at the end of pressing may persist. The stick zone ends where friction lets it,
+    and so as badly known as the contact (measured: m moves twice as far as a). ``weights`` turn tractions at all nodes
+    of the contact line into forces; ``nodes`` are the indices of the nodes of ``history``."""
     off = pressed.errors["q"] * np.linalg.norm(pressed.tangential.x / np.sqrt(weights))
     held = np.sqrt(weights[nodes])
     least = _least(history, held)
     norms = {key: max(float(np.linalg.norm(getattr(history, key) / held)), least) for key in ("q1", "q2")}
-    ends = "a", "left", "right", *(() if history.path.moves else ("m", "n"))
-    return dict.fromkeys(ends, pressed.errors.get("a", 0.0)) | {
+    return dict.fromkeys(("a", "left", "right", "m", "n"), pressed.errors.get("a", 0.0)) | {
         key: float(off / norm) for key, norm in norms.items() if norm > 0
     }
 
