@@ -86,9 +86,11 @@ class Tableau:
 
         With ``along`` (n,), which is T' at the slipping nodes, p holds along - T' where nodes stick.
         """
-        self._add()
         known = np.append(np.where(self.sticks, g, along), Q)
         p: Array = la.blas.dsymv(1.0, self._V, known, lower=1)
+        if self._count:
+            added = self._added[:, : self._count]
+            p += added @ (self._signs[: self._count] * (known @ added))
         p[:-1] += np.where(self.sticks, along, -g)
         return p
 
