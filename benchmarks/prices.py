@@ -35,7 +35,7 @@ SHIPPED = Path(partialslip.__file__).parent / "study" / "cost" / "prices.json"
 RUN = [sys.executable, "-m", "partialslip", "run", "--force"]
 REFERENCE = ("hertz-shear", "--budget", "1e-3s")  # refused once it is priced: the start of a run, and an exit ...
 START = 0.88  # ... and the part of the start, measured
-TOLD, MOST = "reversed", 14
+TOLD, FEWEST = "reversed", 14
 
 
 def drawn(seed: int) -> partialslip.Scene:
@@ -107,16 +107,11 @@ def taken(ledger: Ledger, scene: partialslip.Scene, what: str, seconds: float = 
 
 def fit(ledger: Ledger, count: int) -> None:
     """Measure ``count`` scenes and write the price list."""
-    runs, left = [], MOST
-    for number in itertools.count():
-        if number >= count and left <= 0:
-            break
-        seed = FITTED + number
+    runs, seeds = [], [*range(FITTED, FITTED + count)]
+    missing = FEWEST - sum(prices.family(drawn(seed)) == TOLD for seed in seeds)
+    further = (seed for seed in itertools.count(FITTED + count) if prices.family(drawn(seed)) == TOLD)
+    for seed in [*seeds, *itertools.islice(further, max(missing, 0))]:
         scene = drawn(seed)
-        told = prices.family(scene) == TOLD
-        if number >= count and not told:
-            continue
-        left -= told
         found = taken(ledger, scene, "accuracy")
         print(f"{seed:3} {prices.family(scene):40} {found['cpu_s']:6.2f} s", flush=True)
         if found["costs"]:

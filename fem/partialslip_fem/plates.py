@@ -65,10 +65,7 @@ def compliance_error(problem: Problem, solution: MeshSolution, other: MeshSoluti
     changed = np.abs(compliance - _stuck(D, other.lower.x, across, problem.pin)).max() / unit
     exponents = [exponent for part in problem.parts for exponent in part.exponents.values()]
     elements = _SAFE * changed / abs(1 - (k / j) ** (4 * min(exponents, default=1.0)))
-    nodes, ends = (
-        np.array([[x[first], x[first - 1]], [x[last], x[last + 1]]]),
-        np.array([[solution.left], [solution.right]]),
-    )
+    nodes, ends = x[[[first, first - 1], [last, last + 1]]], np.array([[solution.left], [solution.right]])
     apart = float(np.abs(nodes - ends).max(axis=1).sum()) / (x[last] - x[first])
     return math.hypot(elements, np.abs(by_width).max() / unit * (apart + of_ends))
 
