@@ -32,10 +32,10 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
+from partialslip.halfplane.gradual_path.gradual_mean_bound import gradual_mean_load_bound
 from partialslip.halfplane.gradual_path.half_cycle import steady
-from partialslip.halfplane.gradual_path.mean_bound import gradual_mean_load_bound
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
-from partialslip.halfplane.steady import stick_zone, transition
+from partialslip.halfplane.steady import steady_stick_zone, transition
 from partialslip.judge import compare
 from partialslip.judge.means import norm_errors
 from partialslip.scene.reading import parse_scene
@@ -158,7 +158,7 @@ def shaped(random: np.random.Generator, profile: str, R: float, a: float, A: flo
 
 def _turns(Qf: float, sf: float, shape: Any) -> bool:
     """Whether slip turns round in a single step's zone."""
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     return bool(turns_round(Qf, sf, zone.s, zone.centre, zone.half_width))
 
 

@@ -34,7 +34,7 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, LostError, 
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.gradual_table import PLACE, tabled
 from partialslip.halfplane.hertz import HertzShape
-from partialslip.halfplane.steady import stick_zone, stick_zones
+from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 
 HERTZ = HertzShape()
 CYCLES, STEADY = 8, 1e-8  # half cycles from a neighbour, and the last change: changes fall faster than tenfold
@@ -101,7 +101,7 @@ def turning(s: float) -> float:
     """w at which slip begins to turn round, below the place at which large tension begins."""
 
     def off(w: float) -> float:
-        return stick_zone((1 - w) * (1 + w), s, HERTZ).half_width - least(s, w)
+        return steady_stick_zone((1 - w) * (1 + w), s, HERTZ).half_width - least(s, w)
 
     start = max(1 - s / 8, 0.0)
     grid = (start + (1 - start) * np.geomspace(s / 1e3, 1, 200)[:-1]).tolist()
@@ -219,7 +219,7 @@ def make() -> None:
         return 1.0 if found and found.reaches_end else -1.0
 
     def at_turning(s: float) -> float:
-        zone = stick_zone((1 - turning(s)) * (1 + turning(s)), s, HERTZ)
+        zone = steady_stick_zone((1 - turning(s)) * (1 + turning(s)), s, HERTZ)
         return zone.centre + zone.half_width + least(s, turning(s))
 
     s_again = float(brentq(lambda s: holding_again(s) - NARROWEST, 4.5, 4.95))

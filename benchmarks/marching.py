@@ -17,7 +17,7 @@ from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.march.cells import compliance, forces, graded_cells
 from partialslip.result import StickZone
@@ -58,7 +58,7 @@ def orders() -> None:
         ("flat 0.5, large", Punch(0.5), 0.3, 4.0),
     ]
     for name, shape, Qf, sf in cases:
-        zone = stick_zone(Qf, sf, shape)
+        zone = steady_stick_zone(Qf, sf, shape)
         before, found = None, None
         for level in range(6):
             size, growth = 1e-2 / 4**level, 0.2 / 1.5**level
@@ -85,7 +85,7 @@ def orders() -> None:
 def example(cycles: int = 200) -> None:
     """Q 0.1..0.7 f P, sigma 1..5 f p0: every step certified, change of q from cycle to cycle at the loaded end."""
     f, shape = 0.5, HertzShape()
-    zone = stick_zone(0.3, 4.0, shape)
+    zone = steady_stick_zone(0.3, 4.0, shape)
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     vertices = graded_cells(np.array([-1.0, -m, n, 1.0]), 2e-3, 0.1)
     start = time.perf_counter()
@@ -109,7 +109,7 @@ def example(cycles: int = 200) -> None:
 def settling() -> None:
     """f = 0.5, dQ/(2fP) = 0.2546, dsigma/(f p0) = 1.6: cycles until the range of q changes by less than 1e-6 f p0."""
     f, shape, Qf, sf = 0.5, HertzShape(), 0.2546, 1.6
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     bound = one_step(Qf, sf, shape).mean_load_bound
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     vertices = graded_cells(np.array([-1.0, -m, n, 1.0]), 2e-3, 0.1)

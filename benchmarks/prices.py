@@ -108,15 +108,15 @@ def taken(ledger: Ledger, scene: partialslip.Scene, what: str, seconds: float = 
 def fit(ledger: Ledger, count: int) -> None:
     """Measure ``count`` scenes and write the price list."""
     runs, seeds = [], [*range(FITTED, FITTED + count)]
-    missing = FEWEST - sum(prices.family(drawn(seed)) == TOLD for seed in seeds)
-    further = (seed for seed in itertools.count(FITTED + count) if prices.family(drawn(seed)) == TOLD)
+    missing = FEWEST - sum(prices.price_family(drawn(seed)) == TOLD for seed in seeds)
+    further = (seed for seed in itertools.count(FITTED + count) if prices.price_family(drawn(seed)) == TOLD)
     for seed in [*seeds, *itertools.islice(further, max(missing, 0))]:
         scene = drawn(seed)
         found = taken(ledger, scene, "accuracy")
-        print(f"{seed:3} {prices.family(scene):40} {found['cpu_s']:6.2f} s", flush=True)
+        print(f"{seed:3} {prices.price_family(scene):40} {found['cpu_s']:6.2f} s", flush=True)
         if found["costs"]:
             closing = found["cpu_s"] - found["start_s"] - sum(found["costs"].values())
-            runs.append(prices.Measured(scene, found["costs"], found["start_s"], closing))
+            runs.append(prices.MeasuredRun(scene, found["costs"], found["start_s"], closing))
     machine = ledger[key_of(drawn(FITTED), "accuracy")]["made"]["machine"]
     fitted = prices.fit(runs, f"{machine['processor']}, {machine['cores']} cores, {machine['system']}")
     SHIPPED.write_text(prices.to_json(fitted), "utf-8")
@@ -143,7 +143,7 @@ def check(ledger: Ledger, count: int) -> None:
         worse.append(max(of_all, default=1.0))
         told = f"{predicted:8.2f}s {first['cpu_s']:6.2f}s {ratios[-1]:5.2f}" if predicted else (
             f"not known {first['cpu_s']:6.2f}s     -")  # fmt: skip
-        print(f"{seed} {prices.family(scene):32} {scene.fem.factor:8} {scene.fem.accuracy:.1e} {told} | "
+        print(f"{seed} {prices.price_family(scene):32} {scene.fem.factor:8} {scene.fem.accuracy:.1e} {told} | "
               f"{budget:6.2f}s {second['cpu_s']:6.2f}s {shares[-1]:5.2f} | {ends[0]:.1e} {ends[1]:.1e} "
               f"{worse[-1]:5.2f}", flush=True)  # fmt: skip
     if ratios:

@@ -12,7 +12,7 @@ from partialslip.halfplane import stick_zone as stick_zone_under
 from partialslip.halfplane.gradual_table import parted, tabled
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
-from partialslip.halfplane.steady import stick_zone, stick_zones
+from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.map.figure import ends_svg
 from partialslip.map.grid import stick_map
@@ -122,7 +122,7 @@ def _adhered(figure: "Figure") -> None:
 def _tractions(figure: "Figure", Qf: float, sf: float) -> None:
     """Shear at both load points under fully reversed loads, and the friction bounds."""
     axes, shape = figure.subplots(), HertzShape()
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     ends = np.array([-1.0, -m, n, 1.0])
     crowd = (1 - np.cos(np.linspace(0, np.pi, 101))) / 2

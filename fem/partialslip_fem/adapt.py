@@ -9,18 +9,18 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip.errors import InputError
-from partialslip.friction.coupled import HALF
+from partialslip.friction.coulomb_coupled import HALF
 from partialslip.friction.step_errors import more_steps, steps_matter
 from partialslip.friction.zone_ends import apart
 from partialslip.result import Clock
 from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept
-from partialslip_fem.expense import Expense, work_again
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
-from partialslip_fem.goals import Goal, NextMesh, Outline, course, gaps, size_reached, worst
+from partialslip_fem.goals import Goal, NextMesh, OutlineErrors, course, gaps, size_reached, worst
+from partialslip_fem.mesh_cost import Expense, work_again
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.plates import compliance_error
-from partialslip_fem.problem import Problem
+from partialslip_fem.problem import ScaledProblem
 
 _CALMER = (0.4, 0.85)  # cost: smallest and largest factor of the growth after a mesh whose error is too large
 # cost: error aimed below, and inverse power of the growth that errors fall with where zone ends wander
@@ -47,7 +47,7 @@ _WORTH = 1.2  # cost: of the unknowns of the present mesh: a mesh with fewer is 
 
 
 def adapt(
-    problem: Problem,
+    problem: ScaledProblem,
     accuracy: float,
     width: float,
     clock: Clock,
@@ -111,7 +111,7 @@ class _Refinement:
     the last such error.
     """
 
-    def __init__(self, problem: Problem, accuracy: float, width: float, clock: Clock, keep: Kept | None) -> None:
+    def __init__(self, problem: ScaledProblem, accuracy: float, width: float, clock: Clock, keep: Kept | None) -> None:
         self.problem, self.clock = problem, clock
         self.expense = Expense(clock, len(problem.parts))
         self.solution, self.meshes, self.factored = solve_on_first_mesh(problem, width, clock, keep, alone=True)
@@ -246,7 +246,7 @@ class _Refinement:
         if self.solution.enclosed:
             self.size, self.growth, self.finer = ahead[0]
             arrives = size_reached(self.size, self.size_goal)
-            self.outline = Outline.at(self.goal.accuracy, problem, None if arrives else ahead[0])
+            self.outline = OutlineErrors.at(self.goal.accuracy, problem, None if arrives else ahead[0])
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
         grading = self._grading(problem.order, self.growth, coarsest)
         self.eased = grading.eased is not None
@@ -466,12 +466,12 @@ class _Refinement:
                 return best
         return None if done else best
 
-    def _affords(self, problem: Problem, meshes: list[NextMesh], beyond: float = 0.0) -> bool:
+    def _affords(self, problem: ScaledProblem, meshes: list[NextMesh], beyond: float = 0.0) -> bool:
         """Whether the rest of the allowance, and ``beyond`` more seconds, suffice for ``meshes`` and the estimate."""
         again = work_again(problem.order, estimate.NEIGHBOUR[problem.order]) + problem.inside
         return self.expense.affords([self._unknowns(problem, mesh) for mesh in meshes], again, beyond)
 
-    def _unknowns(self, problem: Problem, mesh: NextMesh) -> float:
+    def _unknowns(self, problem: ScaledProblem, mesh: NextMesh) -> float:
         """Predicted number of unknowns of a ``mesh``."""
         solution, order = self.solution, problem.order
         a, ends = solution.half_width, solution.zone_ends.tolist()

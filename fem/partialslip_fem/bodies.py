@@ -18,7 +18,7 @@ from partialslip_fem.condensation import Condensation
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import body
 from partialslip_fem.farfield import half_plane
-from partialslip_fem.problem import Part, Problem
+from partialslip_fem.problem import Part, ScaledProblem
 from partialslip_meshes import Eased, Mesh, block, fanned, size_at
 
 _OVERHANG = 1e-9  # limit: of the opposite contact line: overhang that counts as rounding of coordinates
@@ -104,13 +104,13 @@ class Kept(threading.local):
             del self._bodies[oldest]
 
 
-def bodies_key(problem: Problem, width: float, grading: Grading) -> tuple[object, ...]:
+def bodies_key(problem: ScaledProblem, width: float, grading: Grading) -> tuple[object, ...]:
     """Key in :class:`Kept` of the bodies of ``problem`` on a mesh: everything that their compliances depend on."""
     kind = (problem.parts, problem.order, problem.far_field, problem.backend, problem.path is None, problem.inside)
     return (*kind, width, *grading._replace(sizes=tuple(grading.sizes.items())))  # type: ignore[arg-type]
 
 
-def mesh_bodies(problem: Problem, width: float, grading: Grading, clock: Clock) -> list[Mesh]:
+def mesh_bodies(problem: ScaledProblem, width: float, grading: Grading, clock: Clock) -> list[Mesh]:
     """Mesh every part of ``problem``. ``width`` is the half-width of blocks that stand for half-planes."""
     meshes: list[Mesh] = []
     for part in problem.parts:
@@ -130,7 +130,7 @@ def _meshed(part: Part, width: float, grading: Grading) -> Mesh:
     return fanned(mesh) if (3 - part.kappa) / (part.kappa - 1) > _INCOMPRESSIBLE else mesh
 
 
-def condense(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Clock) -> tuple[CondensedBody, ...]:
+def condense(meshes: Sequence[Mesh], problem: ScaledProblem, width: float, clock: Clock) -> tuple[CondensedBody, ...]:
     """Assemble and condense the bodies on ``meshes``, in the order of the problem's parts.
 
     Raises
@@ -143,7 +143,7 @@ def condense(meshes: Sequence[Mesh], problem: Problem, width: float, clock: Cloc
     return tuple(_condensed(*pair, problem, width, clock) for pair in zip(meshes, problem.parts, strict=True))
 
 
-def _condensed(mesh: Mesh, part: Part, problem: Problem, width: float, clock: Clock) -> CondensedBody:
+def _condensed(mesh: Mesh, part: Part, problem: ScaledProblem, width: float, clock: Clock) -> CondensedBody:
     with clock.phase("assembly"):
         assembled = body(mesh, part.kappa, problem.order, part.compliance, part.held, part.pulled, part.gripped)
     far = None

@@ -3,7 +3,7 @@
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip_fem.elasticity import Body
+from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.factor import Backend, Factor, Held, factor
 from partialslip_fem.farfield import FarField
 
@@ -36,7 +36,7 @@ class Condensation:
 
     def __init__(
         self,
-        body: Body,
+        body: DiscreteBody,
         far_field: FarField | None = None,
         backend: Backend = "superlu",
         shear: bool = True,

@@ -12,7 +12,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.friction.coupled_step import Relative
 from partialslip_fem.condensation import Condensation
-from partialslip_fem.elasticity import Body
+from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.mortar import transfer
 from partialslip_meshes import Mesh
 
@@ -26,7 +26,7 @@ class CondensedBody:
     """
 
     mesh: Mesh
-    body: Body
+    body: DiscreteBody
     condensation: Condensation
 
     @property

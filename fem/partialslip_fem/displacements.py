@@ -9,7 +9,7 @@ from partialslip.arrays import Array
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import transfer
-from partialslip_fem.problem import Part, Problem
+from partialslip_fem.problem import Part, ScaledProblem
 from partialslip_fem.recovery import traction
 
 
@@ -36,7 +36,7 @@ class DisplacedBody:
     pressures: tuple[PPoly, ...]
 
 
-def displace_bodies(solution: MeshSolution, problem: Problem) -> tuple[DisplacedBody, DisplacedBody]:
+def displace_bodies(solution: MeshSolution, problem: ScaledProblem) -> tuple[DisplacedBody, DisplacedBody]:
     """Solve for the displacements of the lower and the upper body in ``solution`` of ``problem``.
 
     Positive q acts from the lower on the upper body; the bulk tension acts in the lower body.

@@ -5,20 +5,17 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 import skfem
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices
 from partialslip_fem.elements import ELEMENTS, shapes
 from partialslip_meshes import Mesh
 
-Indices = npt.NDArray[np.int64]
-
 
 @dataclass(frozen=True)
-class Body:
+class DiscreteBody:
     """A discretised body: stiffness, contact line and outer boundary.
 
     Parameters
@@ -104,7 +101,7 @@ def _tension(v, w):  # type: ignore[no-untyped-def]
     return v * w.n[0]
 
 
-Held = tuple[Sequence[str], Sequence[str]]
+HeldSides = tuple[Sequence[str], Sequence[str]]
 ALL_AROUND = ("back", "left", "right")
 
 
@@ -113,10 +110,10 @@ def body(
     kappa: float,
     order: int,
     compliance: float = 1.0,
-    held: Held = (ALL_AROUND, ALL_AROUND),
+    held: HeldSides = (ALL_AROUND, ALL_AROUND),
     pulled: bool = False,
     gripped: bool = False,
-) -> Body:
+) -> DiscreteBody:
     """Assemble a body on ``mesh``.
 
     Parameters
@@ -146,7 +143,7 @@ def body(
     if pulled:
         end = skfem.FacetBasis(triangles, element, facets=facets_of(triangles, mesh.lines["right"]))
         pull = np.concatenate([_tension.assemble(end), np.zeros(basis.N)])
-    return Body(
+    return DiscreteBody(
         order=order,
         kappa=kappa,
         compliance=compliance,

@@ -40,7 +40,7 @@ from partialslip.result import Clock
 from partialslip_fem.locked import locked_in
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import within_cells
-from partialslip_fem.problem import Problem
+from partialslip_fem.problem import ScaledProblem
 from partialslip_fem.solving import solve_on_meshes
 
 # accuracy: The order below costs least, but P2 and P1 lock towards nu = 0.5, so that their differences are no errors.
@@ -93,7 +93,7 @@ _ACROSS = 3.0  # accuracy: elements on either side of a kink from which its stre
 _TRACTIONS = {"p": 8.0, "q": 32.0}
 
 
-def neighbour(solution: MeshSolution, problem: Problem, width: float, clock: Clock) -> MeshSolution:
+def neighbour(solution: MeshSolution, problem: ScaledProblem, width: float, clock: Clock) -> MeshSolution:
     """Solve ``problem`` on the meshes of ``solution`` with elements of the neighbouring order.
 
     ``width`` and ``clock`` as for :func:`partialslip_fem.solving.solve_on_meshes`.

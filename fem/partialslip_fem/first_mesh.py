@@ -3,12 +3,12 @@
 import numpy as np
 
 from partialslip.errors import InputError
-from partialslip.friction.coupled import SlidesError
+from partialslip.friction.coulomb_coupled import SlidesError
 from partialslip.result import Clock
 from partialslip_fem import solving
 from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.mesh_solution import MeshSolution
-from partialslip_fem.problem import Part, Problem
+from partialslip_fem.problem import Part, ScaledProblem
 
 FIRST_SIZE = 0.1  # cost: element size, in half-widths of the contact line
 _GROWTH = 1.0  # cost: of the first mesh
@@ -21,7 +21,7 @@ _FILLS = 0.95  # limit: largest contact line, in the width of a finite block: it
 
 
 def solve_on_first_mesh(
-    problem: Problem, width: float, clock: Clock, keep: Kept | None = None, alone: bool = False
+    problem: ScaledProblem, width: float, clock: Clock, keep: Kept | None = None, alone: bool = False
 ) -> tuple[MeshSolution, int, int]:
     """Double the contact line until it encloses the contact. Coarse meshes are stiff: a displacement that makes the
     bodies slide on them is tried on finer ones.
@@ -87,7 +87,7 @@ def widened(width: float, solution: MeshSolution) -> float:
     return max(width, _BEYOND * max(-solution.reach[0], solution.reach[1]) / solution.half_width)
 
 
-def contact_line_limit(problem: Problem) -> float:
+def contact_line_limit(problem: ScaledProblem) -> float:
     """Largest |x| of the contact line; infinite on half-planes.
 
     Raises
@@ -101,7 +101,7 @@ def contact_line_limit(problem: Problem) -> float:
     return limit
 
 
-def too_narrow(problem: Problem) -> InputError:
+def too_narrow(problem: ScaledProblem) -> InputError:
     """The error for finite bodies that are too narrow for the contact."""
     names = (f"bodies.{part.name}.{'mesh' if part.mesh else 'width'}" for part in problem.parts if part.finite)
     return InputError(

@@ -16,7 +16,7 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip_fem import estimate
 from partialslip_fem.mesh_solution import MeshSolution
-from partialslip_fem.problem import Problem
+from partialslip_fem.problem import ScaledProblem
 from partialslip_meshes import Eased
 
 # limit: Bounds on element sizes at the ends of zones, in contact half-widths.
@@ -63,7 +63,7 @@ _NO_GAP = 1e-100  # accuracy: distance of zone ends that coincide: element sizes
 _REACHED = 1.01  # cost: element sizes within this factor of the goal count as having reached it
 
 
-class Outline(NamedTuple):
+class OutlineErrors(NamedTuple):
     """Errors of a mesh at round faces and corners: ``facet_error`` and ``corner_error`` as for
     :class:`partialslip_fem.bodies.Grading`, and the ``errors`` at the contact that these leave, by key."""
 
@@ -72,7 +72,7 @@ class Outline(NamedTuple):
     errors: Mapping[str, float]
 
     @classmethod
-    def at(cls, accuracy: float, problem: Problem, mesh: "NextMesh | None" = None) -> "Outline":
+    def at(cls, accuracy: float, problem: ScaledProblem, mesh: "NextMesh | None" = None) -> "OutlineErrors":
         """What ``accuracy`` requires in ``problem``; on a ``mesh`` on the way to it, chords as good as the mesh is away
         from the ends of zones."""
         found = max(_KNOWN * mesh.size / mesh.finer / (_AWAY_SHARE * AIM), accuracy) if mesh else accuracy
@@ -107,20 +107,20 @@ class Goal:
     bar: float
     end_error: float
     growth: float
-    outline: Outline
+    outline: OutlineErrors
 
     @classmethod
-    def at(cls, accuracy: float, problem: Problem) -> "Goal":
+    def at(cls, accuracy: float, problem: ScaledProblem) -> "Goal":
         """The goal for ``accuracy`` in ``problem``."""
         return cls(
             accuracy=accuracy,
             bar=BAR * accuracy,
             end_error=_END_SHARE * AIM * accuracy,
             growth=growth_at(accuracy, problem.order),
-            outline=Outline.at(accuracy, problem),
+            outline=OutlineErrors.at(accuracy, problem),
         )
 
-    def element_size(self, solution: MeshSolution, problem: Problem) -> float:
+    def element_size(self, solution: MeshSolution, problem: ScaledProblem) -> float:
         """Element size at the ends that suffices, in contact half-widths."""
         size = self.end_error / worst(estimate.end_errors(solution, *_far_apart(solution)))
         size = min(size, estimate.stick_element_size(solution, gaps(solution, problem), self.end_error))
@@ -186,7 +186,7 @@ def growth_at(accuracy: float, order: int) -> float:
     return growth_for(_AWAY_SHARE * AIM * accuracy, order)
 
 
-def eased(solution: MeshSolution, problem: Problem, order: int, growth: float) -> Eased | None:
+def eased(solution: MeshSolution, problem: ScaledProblem, order: int, growth: float) -> Eased | None:
     """How much faster elements of ``order`` grow near the ends of zones than with the ``growth`` far away; None if they
     do not.
 
@@ -199,13 +199,13 @@ def eased(solution: MeshSolution, problem: Problem, order: int, growth: float) -
     return Eased(_STEEPEST, min(solution.half_width, corner(solution, problem)), 1 / order)
 
 
-def corner(solution: MeshSolution, problem: Problem) -> float:
+def corner(solution: MeshSolution, problem: ScaledProblem) -> float:
     """Least distance of a kink of the profile in the contact from an end of the contact; infinite without kinks."""
     kinks = np.array([kink for kink in problem.kinks if solution.left < kink < solution.right])
     return float(np.minimum(kinks - solution.left, solution.right - kinks).min(initial=np.inf))
 
 
-def gaps(solution: MeshSolution, problem: Problem) -> Array:
+def gaps(solution: MeshSolution, problem: ScaledProblem) -> Array:
     """Distances of each zone end to the zone ends, kinks of the profile and of the coefficient of friction, and points
     where slip turns round beside it, (2, k), in contact half-widths.
 

@@ -15,7 +15,7 @@ from partialslip.friction.pressing import Pressed
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import StickInterval
 from partialslip_fem.contact import CondensedBody
-from partialslip_fem.elasticity import Body
+from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.recovery import traction
 
 # accuracy: mean traction of an open node, relative to the largest: rounding of the mass matrix's inverse
@@ -138,7 +138,7 @@ class MeshSolution:
         return self.history.turning(self.lower.x[self.nodes]) if self.history else []
 
     @property
-    def lower(self) -> Body:
+    def lower(self) -> DiscreteBody:
         """The lower body. Nodal contact forces act on the nodes of the lower contact line."""
         return self.bodies[0].body
 

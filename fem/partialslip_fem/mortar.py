@@ -9,14 +9,14 @@ import scipy.sparse.linalg as spla
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array, Indices
-from partialslip_fem.elasticity import Body
+from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.elements import shapes
 from partialslip_fem.recovery import inside_elements
 
 _ON_VERTEX = 1e-6  # accuracy: distance of a jump of the gap's curvature from a vertex, in the cell, that counts as none
 
 
-def transfer(onto: Body, other: Body) -> Array:
+def transfer(onto: DiscreteBody, other: DiscreteBody) -> Array:
     """L2 projection T from the contact line of ``other`` to the contact line of ``onto``, (n, n_other).
 
     T projects displacements. T^T takes nodal forces back: the other body gets nodal forces of the same traction. T
@@ -26,7 +26,7 @@ def transfer(onto: Body, other: Body) -> Array:
     return spla.spsolve(onto.mass.tocsc(), _products(onto, other).toarray())
 
 
-def nodal_forces(body: Body, traction: PPoly) -> Array:
+def nodal_forces(body: DiscreteBody, traction: PPoly) -> Array:
     """Nodal forces on the contact line of ``body``, (n,), of a piecewise ``traction`` that is zero off its cells."""
     order = (body.order + len(traction.c)) // 2 + 1
     rule = _rule(np.clip(np.union1d(body.x[:: body.order], traction.x), body.x[0], body.x[-1]), order)
@@ -35,7 +35,7 @@ def nodal_forces(body: Body, traction: PPoly) -> Array:
     return np.bincount(nodes.ravel(), products.ravel(), len(body.x)).astype(float)
 
 
-def projected(body: Body, gap: Callable[[Array], Array], breaks: Sequence[float]) -> Array:
+def projected(body: DiscreteBody, gap: Callable[[Array], Array], breaks: Sequence[float]) -> Array:
     """Values on the contact line of ``body``, (n,), of a piecewise polynomial ``gap`` of the second degree.
 
     Where its curvature jumps (``breaks``) within a cell, the gap is projected, as its work with the traction counts. An
@@ -64,7 +64,7 @@ def within_cells(vertices: Array, points: Sequence[float]) -> Array:
     return inside[beside > _ON_VERTEX * (vertices[after] - vertices[after - 1])]
 
 
-def _products(onto: Body, other: Body) -> sp.csr_matrix:
+def _products(onto: DiscreteBody, other: DiscreteBody) -> sp.csr_matrix:
     """Integrals of products of shape functions of both bodies, (n, n_other); the quadrature is exact."""
     vertices = np.union1d(onto.x[:: onto.order], other.x[:: other.order])
     vertices = vertices[(vertices >= max(onto.x[0], other.x[0])) & (vertices <= min(onto.x[-1], other.x[-1]))]
@@ -91,7 +91,7 @@ def _rule(vertices: Array, count: int) -> _Rule:
     return _Rule(np.repeat(vertices[:-1], count), (half * (1 + points)).ravel(), (half * weights).ravel())
 
 
-def shape_functions(body: Body, x: Array, offsets: Array | float = 0.0) -> tuple[Indices, Array]:
+def shape_functions(body: DiscreteBody, x: Array, offsets: Array | float = 0.0) -> tuple[Indices, Array]:
     """Nodes whose shape functions do not vanish at ``x`` + ``offsets`` (k,), and the values, (k, order + 1) each.
 
     A point and its ``x`` are in the same cell. The offset counts from the cell's first node, as coordinates resolve a

@@ -10,7 +10,7 @@ from partialslip.friction.coupled_step import Relative
 from partialslip.result.plates import Plates
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import projected
-from partialslip_fem.problem import Problem
+from partialslip_fem.problem import ScaledProblem
 
 _SAFE = 2.0  # accuracy: on the error of the elements away from the ends of the contact (measured on rigs)
 # accuracy: of the error of q that pressing in steps locks in: that of the displacement, relative (measured on rigs)
@@ -18,7 +18,7 @@ _OF_LOCKED = 5e-3
 _FEWEST = 4  # limit: nodes in contact of which two can be left out
 
 
-def plates_of(problem: Problem, solution: MeshSolution) -> Plates | None:
+def plates_of(problem: ScaledProblem, solution: MeshSolution) -> Plates | None:
     """Plates of the two finite bodies of ``solution``; None if a body is a half-plane, or without friction."""
     C, history = solution.relative, solution.history
     if not C or not history:
@@ -44,7 +44,9 @@ def plates_of(problem: Problem, solution: MeshSolution) -> Plates | None:
     )
 
 
-def compliance_error(problem: Problem, solution: MeshSolution, other: MeshSolution, of_ends: float) -> float | None:
+def compliance_error(
+    problem: ScaledProblem, solution: MeshSolution, other: MeshSolution, of_ends: float
+) -> float | None:
     """Error of the plates' compliance by ``solution``, relative; None if it has no plates.
 
     Two independent parts, as root of the sum of squares. Bodies that stick on the same elements are compared with

@@ -20,12 +20,12 @@ from partialslip.result.state import State
 from partialslip.scene import Friction, Profile, Scene
 from partialslip.scene.bodies import Body
 from partialslip_fem.corners import free_exponent, held_exponent, size
-from partialslip_fem.elasticity import ALL_AROUND, Held
+from partialslip_fem.elasticity import ALL_AROUND, HeldSides
 from partialslip_fem.factor import Backend, default_backend
 from partialslip_meshes import Corner, Mesh, read
 
 Support = Literal["clamped", "roller", "sides", "pivot"]
-_HELD: dict[Support, Held] = {
+_HELD: dict[Support, HeldSides] = {
     "clamped": (("back",), ("back",)),
     "roller": (("left", "right"), ("back",)),
     "sides": (("left", "right"), ("left", "right")),
@@ -111,7 +111,7 @@ class Part:
         return not self.finite and not other.finite and self.fineness == other.fineness
 
     @property
-    def held(self) -> Held:
+    def held(self) -> HeldSides:
         """Lines of the mesh that are held along x, and along y."""
         if not self.finite:
             return ALL_AROUND, ALL_AROUND
@@ -146,7 +146,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Problem:
+class ScaledProblem:
     """The scaled contact problem; P = 1, at the load point with the larger P if P varies. Where the bodies turn, x
     counts from the line of action of this P, about which the pressure then has no moment.
 
@@ -299,7 +299,7 @@ class Problem:
         return all(part.mesh for part in self.parts)
 
 
-def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
+def scaled(scene: Scene, plan: Plan, start: State | None = None) -> ScaledProblem:
     """Scale ``scene``, with the effects in ``plan``, from the state ``start`` if given.
 
     Raises
@@ -311,7 +311,7 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> Problem:
     parts, at_ends = parts_of(scene, L), [scene.load.tension[end] for end in scene.load.ends]
     under = even_gap(scene, L)
     parabolic = under is not None and under.parabolic
-    return Problem(
+    return ScaledProblem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
         kinks=tuple((kink - origin) / L for kink in scene.profile.kinks),
         friction=scene.friction,

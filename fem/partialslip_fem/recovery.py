@@ -7,11 +7,11 @@ from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array
 from partialslip.result import TractionAt
-from partialslip_fem.elasticity import Body
+from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.elements import nodes_of
 
 
-def traction(body: Body, forces: Array) -> PPoly:
+def traction(body: DiscreteBody, forces: Array) -> PPoly:
     """Traction on the contact line of ``body`` that is equivalent to nodal ``forces`` (n,), of the elements' order.
 
     Nodal forces are integrals of the traction times shape functions. Dividing by the integrals of the shape functions

@@ -21,7 +21,7 @@ from partialslip_fem.fields import along_surfaces, deformed, edges_near_contact
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.mortar import nodal_forces
 from partialslip_fem.plates import displacement_error, plates_of
-from partialslip_fem.problem import Problem, rescaled
+from partialslip_fem.problem import ScaledProblem, rescaled
 from partialslip_fem.recovery import Polynomials
 from partialslip_fem.stresses import BodyStresses
 
@@ -29,7 +29,7 @@ _SLIDES = "q1 and q2 are not known: the contact slides"
 
 
 def to_result(
-    scene: Scene, plan: Plan, problem: Problem, adapted: Adapted, clock: Clock, start: State | None = None
+    scene: Scene, plan: Plan, problem: ScaledProblem, adapted: Adapted, clock: Clock, start: State | None = None
 ) -> Result:
     """Convert the ``adapted`` solution of ``problem``, the scaled ``scene`` from the state ``start``, to SI units.
 
@@ -119,14 +119,14 @@ def to_result(
     )
 
 
-def _right_grip(problem: Problem, solution: MeshSolution, P: float) -> Array | None:
+def _right_grip(problem: ScaledProblem, solution: MeshSolution, P: float) -> Array | None:
     """Forces on the plate that holds the right side of the lower body, (2,), N/m."""
     if not problem.parts[0].gripped:
         return None
     return P * np.array([solution.bodies[0].at_right_grip(*forces) for forces in solution.forces])
 
 
-def _plates(problem: Problem, adapted: Adapted, scene: Scene) -> Plates | None:
+def _plates(problem: ScaledProblem, adapted: Adapted, scene: Scene) -> Plates | None:
     """Plates of two finite bodies, in SI units."""
     if not (found := plates_of(problem, adapted.solution)):
         return None
@@ -144,7 +144,7 @@ def _plates(problem: Problem, adapted: Adapted, scene: Scene) -> Plates | None:
     )
 
 
-def _state(scene: Scene, problem: Problem, solution: MeshSolution, errors: dict[str, float]) -> State | None:
+def _state(scene: Scene, problem: ScaledProblem, solution: MeshSolution, errors: dict[str, float]) -> State | None:
     """Loads and tractions at the end of the load path, None without friction; ``errors`` are the estimated ones."""
     if not solution.history:
         return None
@@ -155,7 +155,7 @@ def _state(scene: Scene, problem: Problem, solution: MeshSolution, errors: dict[
     return end_state(scene, p, q, errors, solution.history, solution.lower.weights[solution.nodes])
 
 
-def _certificate(problem: Problem, solution: MeshSolution, p0: float) -> dict[str, float]:
+def _certificate(problem: ScaledProblem, solution: MeshSolution, p0: float) -> dict[str, float]:
     """Largest residual of normal contact and friction and largest tension, in p0; of equilibrium, relative to P."""
     weights = solution.lower.weights
     pressing = solution.pressing
@@ -167,20 +167,20 @@ def _certificate(problem: Problem, solution: MeshSolution, p0: float) -> dict[st
     return {key: max(normal[key], friction[key]) for key in normal}
 
 
-def _bodies(solution: MeshSolution, problem: Problem) -> str:
+def _bodies(solution: MeshSolution, problem: ScaledProblem) -> str:
     if len(solution.bodies) == 1:
         return "mirror images, one factored"
     return "two, coupled" if problem.coupled else "two, not coupled"
 
 
-def _extents(problem: Problem, width: float) -> dict[str, str | float]:
+def _extents(problem: ScaledProblem, width: float) -> dict[str, str | float]:
     """Settings: far field and half-width of the blocks that stand for half-planes."""
     if all(part.finite for part in problem.parts):
         return {"far_field": "none, finite bodies"}
     return {"far_field": problem.far_field, "block_half_width_over_a": width}
 
 
-def _fineness(scene: Scene, problem: Problem, accuracy: float) -> dict[str, str | float]:
+def _fineness(scene: Scene, problem: ScaledProblem, accuracy: float) -> dict[str, str | float]:
     """Settings: where the element size comes from."""
     if problem.meshed:
         return {"meshes": "as given"}

@@ -9,7 +9,7 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
-from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure, coupled, step_errors
+from partialslip.friction import coulomb_constant_pressure, coulomb_coupled, coulomb_varying_pressure, step_errors
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import Pivot, Relative
 from partialslip.friction.even_gap import PARABOLA
@@ -23,10 +23,10 @@ from partialslip.friction.zone_ends import NEAREST, VERTICES, within
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
-from partialslip_fem.elasticity import Body
+from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import nodal_forces, projected
-from partialslip_fem.problem import Problem
+from partialslip_fem.problem import ScaledProblem
 from partialslip_fem.zones import (
     contact_ends_of,
     growth_when_pressed,
@@ -39,7 +39,7 @@ from partialslip_meshes import Mesh
 
 
 def mesh_and_solve(
-    problem: Problem,
+    problem: ScaledProblem,
     width: float,
     grading: Grading,
     clock: Clock,
@@ -79,14 +79,14 @@ def mesh_and_solve(
         keep.add(key, bodies, shared)
     try:
         return solve_contact(problem, bodies, len(bodies), clock, check, shared, before)
-    except coupled.SlidesError as slides:
+    except coulomb_coupled.SlidesError as slides:
         slides.factored = len(bodies)
         raise
 
 
 def solve_on_meshes(
     meshes: Sequence[Mesh],
-    problem: Problem,
+    problem: ScaledProblem,
     width: float,
     clock: Clock,
     check: bool = False,
@@ -101,7 +101,7 @@ def solve_on_meshes(
 
 
 def solve_contact(
-    problem: Problem,
+    problem: ScaledProblem,
     bodies: tuple[CondensedBody, ...],
     factored: int,
     clock: Clock,
@@ -170,12 +170,12 @@ def solve_contact(
         )  # fmt: skip
 
 
-def _together(problem: Problem, C: Relative) -> bool:
+def _together(problem: ScaledProblem, C: Relative) -> bool:
     """Whether p and q are solved together, step by step: where ``C`` couples them, or plates are moved."""
     return C.xy is not None or (problem.path is not None and problem.path.actuator is not None)
 
 
-def _on_line(line: Body, nodes: Indices, values: Array) -> Array:
+def _on_line(line: DiscreteBody, nodes: Indices, values: Array) -> Array:
     """``values`` (k,) of the ``nodes``, with zeros at all other nodes of the contact line, (n,)."""
     result = np.zeros(len(line.x))
     result[nodes] = values
@@ -199,7 +199,7 @@ class _ContactForces:
 
 
 def _contact_forces(
-    problem: Problem,
+    problem: ScaledProblem,
     C: Relative,
     lower: CondensedBody,
     check: bool,
@@ -217,7 +217,7 @@ def _contact_forces(
         trail = Trail(line.x, before.trail if before else None)
         ends = partial(contact_ends_of, line, beta=problem.beta)
         reach = before.half_width if before else None
-        along = coupled.Nodes(
+        along = coulomb_coupled.Nodes(
             line.x,
             line.weights,
             ends,
@@ -234,14 +234,14 @@ def _contact_forces(
         near = BARS["q"] * problem.accuracy
         pivot = None if problem.pin is None else Pivot(line.x, problem.pin, 0.0)
         loaded = C, gap, stretch, moved[1], problem.f_at(line.x)
-        history, pressing, first = coupled.march(*loaded, path, pressed, along, near, pivot)
+        history, pressing, first = coulomb_coupled.march(*loaded, path, pressed, along, near, pivot)
         nodes = np.flatnonzero(history.bound > 0)
         most = np.max([pressing.x, *history.pressures, *history.around.pressures], axis=0)
         left: step_errors.Errors = {}
         moves, began = np.zeros((2, 2)), time.process_time()
         if check and path.moves:
             other = step_errors.other_steps(path), pressed, replace(along, trail=None), near, pivot
-            finer, *_ = coupled.march(*loaded, *other)
+            finer, *_ = coulomb_coupled.march(*loaded, *other)
             left, moves = _path_errors(problem, line, history, finer), step_errors.of_plates(history, finer)
         choosing = time.process_time() - began
         return _ContactForces(
@@ -267,7 +267,7 @@ def _contact_forces(
     return _ContactForces(pressing, pressing.x, history, nodes)
 
 
-def _path_errors(problem: Problem, line: Body, history: History, finer: History) -> step_errors.Errors:
+def _path_errors(problem: ScaledProblem, line: DiscreteBody, history: History, finer: History) -> step_errors.Errors:
     """Errors of the load steps of coupled bodies; ``history`` and ``finer`` at all nodes of the contact ``line``."""
 
     def ends(each: History) -> tuple[float, ...]:
@@ -282,7 +282,7 @@ def _path_errors(problem: Problem, line: Body, history: History, finer: History)
 
 
 def _under_varying_pressure(
-    problem: Problem,
+    problem: ScaledProblem,
     C: Relative,
     lower: CondensedBody,
     presses: Presses,

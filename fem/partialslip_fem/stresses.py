@@ -14,7 +14,7 @@ from partialslip.friction.piecewise import PiecewiseCauchy
 from partialslip.scene import Scene
 from partialslip_fem.factor import default_backend
 from partialslip_fem.mesh_solution import MeshSolution
-from partialslip_fem.problem import Part, Problem, parts_of
+from partialslip_fem.problem import Part, ScaledProblem, parts_of
 from partialslip_fem.recovery import traction
 from partialslip_fem.remainder import Remainder
 from partialslip_fem.surroundings import height
@@ -82,7 +82,7 @@ class BodyStresses:
     width: float | None
 
     @classmethod
-    def of(cls, scene: Scene, problem: Problem, solution: MeshSolution) -> "BodyStresses":
+    def of(cls, scene: Scene, problem: ScaledProblem, solution: MeshSolution) -> "BodyStresses":
         """Stresses of both bodies in ``solution`` of ``problem``, the scaled ``scene``."""
         phases, shears, normals = _steps(scene, solution)
         both = [traction(solution.lower, each) for each in (*normals, *shears)]

@@ -14,7 +14,7 @@ import skfem
 
 from partialslip.arrays import Array, Complex
 from partialslip_fem.bodies import Grading, block_of
-from partialslip_fem.elasticity import Body, body, facets_of, triangles_of
+from partialslip_fem.elasticity import DiscreteBody, body, facets_of, triangles_of
 from partialslip_fem.elements import ELEMENTS
 from partialslip_fem.factor import Backend, factor
 from partialslip_fem.mortar import shape_functions
@@ -77,7 +77,7 @@ def surroundings(
     return Surroundings(forced + off_line - on_line, stretched)
 
 
-def left_over(part: Part, mesh: Mesh, order: int, places: Array, backend: Backend) -> tuple[Body, Array]:
+def left_over(part: Part, mesh: Mesh, order: int, places: Array, backend: Backend) -> tuple[DiscreteBody, Array]:
     """The body ``part`` on ``mesh``, and displacements (2 N, 2 l + 1) of its nodes, less those of Flamant's solutions:
     under unit forces at ``places`` (l,) along x, then along y; and those under a unit tension at its end, if it is
     pulled there."""

@@ -11,12 +11,14 @@ from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.first_mesh import contact_line_limit, solve_on_first_mesh, too_narrow, widened
 from partialslip_fem.goals import growth_for
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
-from partialslip_fem.problem import Problem
+from partialslip_fem.problem import ScaledProblem
 
 _FEWEST = 4  # limit: elements in the contact on a mesh from a file
 
 
-def uniform(problem: Problem, size: float | None, width: float, clock: Clock, keep: Kept | None = None) -> Adapted:
+def uniform(
+    problem: ScaledProblem, size: float | None, width: float, clock: Clock, keep: Kept | None = None
+) -> Adapted:
     """Solve on one mesh with elements of one size all along the contact line.
 
     The mesh does not depend on friction and shear: with ``keep`` these can change without a new factorisation.
@@ -61,7 +63,7 @@ def uniform(problem: Problem, size: float | None, width: float, clock: Clock, ke
         reach *= 1.5
 
 
-def _sizes_in_files(problem: Problem, solution: MeshSolution) -> list[float]:
+def _sizes_in_files(problem: ScaledProblem, solution: MeshSolution) -> list[float]:
     """Mean element size in the contact of each mesh from a file."""
     sizes = []
     for part, condensed in zip(problem.parts, solution.bodies, strict=True):

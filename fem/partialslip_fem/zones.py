@@ -9,8 +9,8 @@ from partialslip.friction import zone_ends
 from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone
-from partialslip_fem.elasticity import Body
-from partialslip_fem.problem import Problem
+from partialslip_fem.elasticity import DiscreteBody
+from partialslip_fem.problem import ScaledProblem
 from partialslip_fem.recovery import traction
 
 _ROUGH = 3  # accuracy: cells at each end of the contact in which tractions are not smooth
@@ -19,7 +19,7 @@ _SAME_KINK = 1e-3  # accuracy: of the contact half-width: kinks nearer to each o
 
 
 def contact_ends_of(
-    line: Body,
+    line: DiscreteBody,
     normal: Array,
     shear: Array | None = None,
     beta: float = 0.0,
@@ -35,7 +35,7 @@ def contact_ends_of(
     )
 
 
-def resultants_of(line: Body, normal: Array, shear: Array) -> tuple[Array, Array, Array]:
+def resultants_of(line: DiscreteBody, normal: Array, shear: Array) -> tuple[Array, Array, Array]:
     """Points (k,) well inside the contact under ``normal`` and ``shear`` forces (n,), and the forces along y and x on
     their left, (k,) each. Near the ends, where tractions are not smooth, there are none."""
     first, last = np.flatnonzero(normal > 0)[[0, -1]] // line.order
@@ -44,14 +44,14 @@ def resultants_of(line: Body, normal: Array, shear: Array) -> tuple[Array, Array
     return points, *(traction(line, forces).antiderivative()(points) for forces in (normal, shear))
 
 
-def weighted_means(line: Body, forces: Array) -> Array:
+def weighted_means(line: DiscreteBody, forces: Array) -> Array:
     """Means over the cells of the contact line, (c,), of the traction that is equivalent to nodal ``forces`` (n,),
     times the roots of the cells' widths: their norm is an L2 norm."""
     return _cell_forces(line, forces) / np.sqrt(np.diff(line.x[:: line.order]))
 
 
 def stick_zone_of(
-    line: Body, nodes: Indices, history: History, growth: tuple[Array, Array] | None = None
+    line: DiscreteBody, nodes: Indices, history: History, growth: tuple[Array, Array] | None = None
 ) -> StickInterval:
     """Stick zone of ``history`` on the contact ``nodes`` of the ``line``.
 
@@ -65,7 +65,7 @@ def stick_zone_of(
     )
 
 
-def growth_when_pressed(first: Pressed | None, nodes: Indices, problem: Problem) -> tuple[Array, Array] | None:
+def growth_when_pressed(first: Pressed | None, nodes: Indices, problem: ScaledProblem) -> tuple[Array, Array] | None:
     """Bound f dp and shear 2 dq of the last increment of P, where P alone acts on coupled bodies; otherwise None."""
     if not first or not problem.path or problem.path.moves:
         return None
@@ -73,7 +73,7 @@ def growth_when_pressed(first: Pressed | None, nodes: Indices, problem: Problem)
     return first.f[nodes] * np.maximum(p[nodes], 0.0), 2 * q[nodes]
 
 
-def shear_kinks(problem: Problem, line: Body, nodes: Indices, history: History) -> tuple[float, ...]:
+def shear_kinks(problem: ScaledProblem, line: DiscreteBody, nodes: Indices, history: History) -> tuple[float, ...]:
     """Points where slip, or the traction at the start of the path, leaves a kink in q1 or q2.
 
     If half a cycle suffices, the only kinks are the ends of the stick zone, and the result is empty.
@@ -88,14 +88,14 @@ def shear_kinks(problem: Problem, line: Body, nodes: Indices, history: History) 
     return tuple(apart(found, _SAME_KINK * (x[-1] - x[0]) / 2))
 
 
-def _forces_of(line: Body, nodes: Indices, forces: Array) -> Array:
+def _forces_of(line: DiscreteBody, nodes: Indices, forces: Array) -> Array:
     """Force on each cell of the contact line, from ``forces`` on some ``nodes``."""
     on_line = np.zeros(len(line.x))
     on_line[nodes] = forces
     return _cell_forces(line, on_line)
 
 
-def _cell_forces(line: Body, forces: Array) -> Array:
+def _cell_forces(line: DiscreteBody, forces: Array) -> Array:
     """Integral over each cell of the traction that is equivalent to nodal ``forces`` (n,)."""
     resultant = traction(line, forces).antiderivative()
     return np.diff(resultant(line.x[:: line.order]))

@@ -10,7 +10,7 @@ from partialslip.errors import InputError
 from partialslip_meshes.files import check_files, quiet
 
 # Suffixes of meshio's formats with point data. Readers of other formats may not terminate.
-FORMATS = {".vtu", ".vtk", ".xdmf", ".xmf", ".msh", ".med", ".e", ".exo", ".ex2"}
+WRITTEN_FORMATS = {".vtu", ".vtk", ".xdmf", ".xmf", ".msh", ".med", ".e", ".exo", ".ex2"}
 
 
 def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:

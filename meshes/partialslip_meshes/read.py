@@ -14,11 +14,11 @@ from partialslip_meshes.mesh import Mesh
 if TYPE_CHECKING:
     import meshio
 
-Array = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+_Array = npt.NDArray[np.float64]
+_Indices = npt.NDArray[np.int64]
 
-FORMATS = (".msh", ".inp", ".med", ".vtu")
-NAMES = ("contact", "face", "back", "left", "right")
+READ_FORMATS = (".msh", ".inp", ".med", ".vtu")
+BOUNDARY_NAMES = ("contact", "face", "back", "left", "right")
 _IGNORED = {"vertex": 1, "line": 2, "line3": 3}  # fixed: nodes of cells that are allowed besides elements
 _NODES = {"triangle": 3, "triangle6": 6, "triangle7": 7, "quad": 4, "quad8": 8, "quad9": 9} | _IGNORED
 _LARGEST = 1e30  # limit: coordinate
@@ -33,7 +33,7 @@ def read(
     name: str,
     path: str,
     unit: float = 1.0,
-    face: Callable[[Array], Array] | None = None,
+    face: Callable[[_Array], _Array] | None = None,
     needed: Sequence[str] = ("back",),
 ) -> Mesh:
     """Read the mesh of a body and move it below the line y = 0, which its contact line touches.
@@ -105,8 +105,8 @@ def _refusal(name: str, path: str) -> Refuse:
 
 
 def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
-    if Path(path).suffix.lower() not in FORMATS:
-        refuse(f"must be a file {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
+    if Path(path).suffix.lower() not in READ_FORMATS:
+        refuse(f"must be a file {', '.join(READ_FORMATS[:-1])} or {READ_FORMATS[-1]}")
     check_files(path, f"{name} = {path!r}")
     printed, damaged = "", "the file is damaged or of another format"
     try:
@@ -127,7 +127,7 @@ def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
         refuse(f"cannot be read: {' '.join(why.split())}")
 
 
-def _in_plane(points: Array, refuse: Refuse) -> Array:
+def _in_plane(points: _Array, refuse: Refuse) -> _Array:
     points = np.asarray(points, dtype=float)
     if points.ndim != 2 or not len(points) or points.shape[1] not in (2, 3):
         refuse("must have nodes")
@@ -138,7 +138,7 @@ def _in_plane(points: Array, refuse: Refuse) -> Array:
     return points[:, :2]
 
 
-def _triangles(found: "meshio.Mesh", points: Array, refuse: Refuse) -> Indices:
+def _triangles(found: "meshio.Mesh", points: _Array, refuse: Refuse) -> _Indices:
     """Corners of all elements, (t, 3); quadrilaterals are split along the shorter diagonal."""
     if unknown := sorted({block.type for block in found.cells} - {*_NODES}):
         refuse(f"must have triangles and quadrilaterals, linear or quadratic, not {', '.join(unknown)}")
@@ -172,7 +172,7 @@ def _triangles(found: "meshio.Mesh", points: Array, refuse: Refuse) -> Indices:
     return np.concatenate(parts)
 
 
-def _ccw(points: Array, corners: Indices, refuse: Refuse) -> Indices:
+def _ccw(points: _Array, corners: _Indices, refuse: Refuse) -> _Indices:
     """Turn all triangles counter-clockwise."""
     if not len(corners):
         refuse("must have triangles or quadrilaterals")
@@ -183,7 +183,7 @@ def _ccw(points: Array, corners: Indices, refuse: Refuse) -> Indices:
     return np.where((areas > 0)[:, None], corners, corners[:, ::-1])
 
 
-def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
+def _boundary(corners: _Indices, count: int, refuse: Refuse) -> _Indices:
     """Edges that belong to one triangle only, with the body on their left, (b, 2)."""
     from scipy.sparse import coo_array  # takes long to import
     from scipy.sparse.csgraph import connected_components
@@ -202,7 +202,7 @@ def _boundary(corners: Indices, count: int, refuse: Refuse) -> Indices:
     return edges[~shared]
 
 
-def _check_cracks(points: Array, boundary: Indices, refuse: Refuse) -> None:
+def _check_cracks(points: _Array, boundary: _Indices, refuse: Refuse) -> None:
     """Refuse a mesh whose elements are not joined: nodes of the boundary at one place, or a hole without an area, as
     around a node in the middle of another element's side."""
     from scipy.sparse import coo_array  # takes long to import
@@ -223,10 +223,10 @@ def _check_cracks(points: Array, boundary: Indices, refuse: Refuse) -> None:
         refuse(f"must have elements that share whole sides; cracks between elements: {cracks}")
 
 
-def _lines(found: "meshio.Mesh", boundary: Indices, refuse: Refuse) -> Iterator[tuple[str, Indices]]:
+def _lines(found: "meshio.Mesh", boundary: _Indices, refuse: Refuse) -> Iterator[tuple[str, _Indices]]:
     """Name and boundary edges of each group."""
     known = np.sort(boundary, axis=1)
-    for name in NAMES:
+    for name in BOUNDARY_NAMES:
         edges = np.concatenate([np.empty((0, 2), dtype=np.int64), *_edges_of(found, name)])
         nodes = np.zeros(len(found.points), dtype=bool)
         for some in _nodes_of(found, name):
@@ -236,7 +236,7 @@ def _lines(found: "meshio.Mesh", boundary: Indices, refuse: Refuse) -> Iterator[
         yield name, boundary[_among(known, np.sort(edges, axis=1)) | nodes[boundary].all(axis=1)]
 
 
-def _edges_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
+def _edges_of(found: "meshio.Mesh", name: str) -> Iterator[_Indices]:
     """Edges of the group ``name`` of line cells, in any of the formats' ways."""
     ids = {int(number[0]) for key, number in found.field_data.items() if key.lower() == name and len(number) == 2}
     families = {number for number, keys in getattr(found, "cell_tags", {}).items() if name in map(str.lower, keys)}
@@ -255,7 +255,7 @@ def _edges_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
             yield ends[np.asarray(sets[name][block], dtype=np.int64)]
 
 
-def _nodes_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
+def _nodes_of(found: "meshio.Mesh", name: str) -> Iterator[_Indices]:
     """Nodes of the node group ``name``, in any of the formats' ways."""
     families = [number for number, keys in getattr(found, "point_tags", {}).items() if name in map(str.lower, keys)]
     for key, values in found.point_data.items():
@@ -268,7 +268,7 @@ def _nodes_of(found: "meshio.Mesh", name: str) -> Iterator[Indices]:
             yield np.asarray(members, dtype=np.int64)
 
 
-def _below(points: Array, contact: Indices, refuse: Refuse) -> bool:
+def _below(points: _Array, contact: _Indices, refuse: Refuse) -> bool:
     """Whether the body lies below its contact line."""
     if len(contact) < _FEWEST:
         refuse(f"group 'contact' must have at least {_FEWEST} edges, not {len(contact)}")
@@ -278,7 +278,7 @@ def _below(points: Array, contact: Indices, refuse: Refuse) -> bool:
     return way < 0
 
 
-def _way(points: Array, edges: Indices) -> int:
+def _way(points: _Array, edges: _Indices) -> int:
     """Direction along x of ``edges``, 1 or -1; 0 if they are not one line that goes from left to right."""
     ways = np.sign(np.diff(points[edges, 0], axis=1))
     nodes = np.unique(edges)
@@ -288,7 +288,7 @@ def _way(points: Array, edges: Indices) -> int:
     return int(ways[0, 0]) if joined and (ways == ways[0]).all() else 0
 
 
-def _lay(points: Array, contact: Indices, face: Callable[[Array], Array] | None, refuse: Refuse) -> None:
+def _lay(points: _Array, contact: _Indices, face: Callable[[_Array], _Array] | None, refuse: Refuse) -> None:
     """Shift ``points`` along y so that the contact line touches y = 0."""
     x, y = points[np.unique(contact)].T
     height = y + (face(x) if face else 0.0)
@@ -299,11 +299,11 @@ def _lay(points: Array, contact: Indices, face: Callable[[Array], Array] | None,
     points[:, 1] -= np.median(height)
 
 
-def _among(edges: Indices, others: Indices) -> npt.NDArray[np.bool_]:
+def _among(edges: _Indices, others: _Indices) -> npt.NDArray[np.bool_]:
     """Which of the ``edges`` are among the ``others``; nodes of each edge must be sorted."""
     count = max(edges.max(initial=0), others.max(initial=0)) + 1
     return np.isin(edges @ [count, 1], others @ [count, 1])
 
 
-def _cross(a: Array, b: Array) -> Array:
+def _cross(a: _Array, b: _Array) -> _Array:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

@@ -30,6 +30,7 @@ Effect = Literal[
     "far-field",
     "subsurface",
 ]
+_FIELDS = "fields inside the bodies were asked for"
 _Decisions = dict[Effect, tuple[bool, str, str]]  # whether needed; reason if needed; reason if not
 
 
@@ -50,6 +51,13 @@ class Plan:
     def needs(self, effect: Effect) -> bool:
         """Whether the scene calls for ``effect``."""
         return effect in self.called_for
+
+    @property
+    def with_stresses(self) -> "Plan":
+        """The plan with fields inside the bodies."""
+        called_for: dict[Effect, str] = {"subsurface": _FIELDS}
+        left_out: dict[Effect, str] = {effect: why for effect, why in self.left_out.items() if effect != "subsurface"}
+        return Plan(self.called_for | called_for, left_out, self.missing) if left_out != self.left_out else self
 
     def accept(self, regime: str) -> None:
         """Raise InputError if the ``regime`` of a result requires an effect that is forced off."""
@@ -80,7 +88,7 @@ def plan(scene: AnyScene, *, subsurface: bool = False, start: bool = False) -> P
     own = _decide(replace(scene, effects=Effects()), subsurface, start)
     forced = _forced(scene)
     _refuse(scene, forced, own, start)
-    decided = _decide(reduced(scene), subsurface, start)
+    decided = _decide(reduced(scene), subsurface, start) if forced else own
     called_for: dict[Effect, str] = {}
     left_out: dict[Effect, str] = {}
     for effect, (needed, why, why_not) in decided.items():
@@ -155,11 +163,12 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
         no_friction = "f = 0: no traction holds the surfaces along x"
     else:
         no_friction = "|Q| >= f P at a load point: the contact slides as a whole"
+    one_way, turns = small_tension(scene), may_turn_round(scene)
     small = ""
-    if not moved and small_tension(scene):
+    if one_way and not moved:
         small = "tension is small: both ends of a Hertz contact slip the same way"
     opposing = "tension may turn the slip at one end of the contact"
-    history = _why_history(scene, coupled, start)
+    history = _why_history(scene, coupled, start, turns)
     units, anew = scene.units, scene.presses_anew
     forces, moments = [P for P, _ in scene.pressing], [M or 0.0 for _, M in scene.pressing]
     varies = [f"P goes between {units.span(forces, 'N/m')}"] if len(set(forces)) > 1 else []
@@ -193,12 +202,12 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
         "far-field": (scene.fem.far_field == "half-plane" and None in (scene.bodies.upper, scene.bodies.lower),
                       "a block is held by the displacements of the half-plane it stands for",
                       "blocks are held as they are: no half-plane around them"),
-        "subsurface": (subsurface, "fields inside the bodies were asked for",
+        "subsurface": (subsurface, _FIELDS,
                        "fields inside the bodies were not asked for"),
     }  # fmt: skip
 
 
-def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
+def _why_history(scene: Scene, coupled: bool, start: bool, turns: bool) -> str:
     """Reason why locked-in tractions depend on the path; empty if they do not.
 
     If slip does not reverse from load point 1 to 2, the change of shear is twice that of the first loading (Masing's
@@ -217,7 +226,7 @@ def _why_history(scene: Scene, coupled: bool, start: bool) -> str:
         return "the pressure varies: what it locks in where the contact grows depends on the path"
     if not load.fully_reversed:
         return "mean loads act: the tractions locked in by the first cycles depend on the path"
-    if may_turn_round(scene):
+    if turns:
         return "slip may reverse between load points 1 and 2"
     if load.steps > 1 or len(load.points) > 2:
         return "load.steps > 1, or there are more than two load points"

@@ -19,7 +19,7 @@ from partialslip.judge.recorded import conditions_again, judged_again
 from partialslip.judge.reference import reference_among
 from partialslip.origin import Made, versions
 from partialslip.plan import Effect, Plan
-from partialslip.result.record import Number, ResultRecord, record_of
+from partialslip.result.record import JsonNumber, ResultRecord, record_of
 from partialslip.run import Run
 from partialslip.scene import Scene
 from partialslip.seal import KEY, edited, sealed_text
@@ -67,12 +67,12 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
     """
 
     outcome: Outcome
-    errors: dict[str, Number]
-    p_nodal: Number
-    q_nodal: Number
-    p_nodal_max: Number
-    q_nodal_max: Number
-    bars: dict[str, Number]
+    errors: dict[str, JsonNumber]
+    p_nodal: JsonNumber
+    q_nodal: JsonNumber
+    p_nodal_max: JsonNumber
+    q_nodal_max: JsonNumber
+    bars: dict[str, JsonNumber]
     missed: tuple[str, ...]
     verdicts: tuple[Verdict, ...]
     conditions: tuple[Verdict, ...]

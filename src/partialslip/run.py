@@ -227,7 +227,8 @@ def run(
         Whether to compute fields inside the bodies: displacements (fem) and stresses.
     stresses : bool
         Whether a method that holds for the scene computes stresses along the surfaces, even if fields inside the bodies
-        are not asked for: exact and march, and fem if neither of these knows them.
+        are not asked for: exact and march, and fem if neither of these knows them. None does if ``[effects]`` force
+        subsurface off.
     progress : callable
         ``progress(line)``: called from time to time with a line of text.
     start : State, optional
@@ -264,14 +265,15 @@ def run(
         chosen = tuple(sorted(chosen, key=lambda name: name != "fem"))
     # cheap methods come first unless they need Q of fem: what they refuse is refused at once
     order = chosen if scene.load.displacement is not None else sorted(chosen, key=[*METHODS].index)
-    tasks = {name: (name, reduced(scene), effects) for name in order}
+    what = reduced(scene)
+    tasks = {name: (name, what, effects) for name in order}
     if effects.missing:
         whole = replace(scene, effects=Effects())
         tasks[ALL_EFFECTS] = reference(whole).method, whole, plan(whole, subsurface=subsurface, start=start is not None)
     results: dict[str, Result] = {}
     for name, (method, what, its) in tasks.items():
         if stresses and _finds_stresses(what, method, results):
-            its = plan(what, subsurface=True, start=start is not None)
+            its = its.with_stresses
         if method != "fem" and "fem" in results:
             what = _forced(what, results["fem"])
         solve = METHODS[method].solver(keep=keep, allowance=allowance, rig_of=rig_of)
@@ -291,6 +293,8 @@ def run(
 
 def _finds_stresses(scene: Scene, method: str, before: Mapping[str, Result]) -> bool:
     """Return whether ``method`` is to find the stresses of ``scene``, after the results ``before``."""
+    if scene.effects.subsurface is False:
+        return False
     if scene.finite or not scene.material.alike:
         return method == "fem"
     return method in ("exact", "march") or not any(result.surface for result in before.values())

@@ -17,7 +17,7 @@ from partialslip.errors import InputError
 
 _Kind = TypeVar("_Kind")
 _DIGITS = 19  # fixed: of the largest whole numbers of 64 bits
-KINDS = {
+JSON_KINDS = {
     "object": "an object",
     "array": "an array",
     "float": "a number",
@@ -93,7 +93,7 @@ def _said(message: str) -> str:
     return f"{place}must be {wanted(what) or what.replace('`', '').removeprefix('Expected ')}"
 
 
-def wanted(what: str, kinds: Mapping[str, str] = KINDS) -> str | None:
+def wanted(what: str, kinds: Mapping[str, str] = JSON_KINDS) -> str | None:
     """Return the type or the bound that a value must have, in plain words, from ``what`` msgspec says; ``kinds`` are
     the words of types. None if it says something else."""
     if wrong := re.fullmatch(r"Expected `([a-z]+(?: \| [a-z]+)*)`, got `(?:datetime\.)?([a-z]+)`", what):

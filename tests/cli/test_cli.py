@@ -51,7 +51,7 @@ def rows(folder):
 
 
 def names(folder):
-    return sorted(path.name for path in folder.iterdir() if path.name != place.NAME)
+    return sorted(path.name for path in folder.iterdir() if path.name != place.REQUEST_NAME)
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ import pytest
 from partialslip.cli import main
 from partialslip.output import files, place
 from partialslip.output.files import write_files
-from partialslip.output.lock import NAME  # this file may stay; the lock does not
+from partialslip.output.lock import LOCK_NAME  # this file may stay; the lock does not
 from partialslip.verify.document import read_study
 
 RUN = (
@@ -103,7 +103,9 @@ def stopped(tmp_path_factory):
 def whole(folder):
     """Check every file with a final name. Returns the names, and the names of all other files."""
     names = (
-        sorted(path.name for path in folder.iterdir() if path.name not in (NAME, place.NAME)) if folder.exists() else []
+        sorted(path.name for path in folder.iterdir() if path.name not in (LOCK_NAME, place.REQUEST_NAME))
+        if folder.exists()
+        else []
     )
     for name in names:
         path = folder / name
@@ -157,7 +159,7 @@ def test_a_verification_stopped_at_a_write_goes_on(stopped, tmp_path, at, cases,
     assert main([*VERIFY[:-1], str(tmp_path / "out")]) == 0
     assert ledger.read_bytes().startswith(kept)
     assert json.loads((tmp_path / "out" / "results.json").read_text("utf-8"))["finished"]
-    names = {path.name for path in (tmp_path / "out").iterdir() if path.name != place.NAME}
+    names = {path.name for path in (tmp_path / "out").iterdir() if path.name != place.REQUEST_NAME}
     assert names == {"ledger.jsonl", "report.html", "report.pdf", "results.csv", "results.json"}
 
 

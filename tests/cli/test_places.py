@@ -19,7 +19,7 @@ from partialslip.map import files as map_files
 from partialslip.map import grid
 from partialslip.output import lock, place
 from partialslip.output.files import write_new_file
-from partialslip.output.place import NAME, Request, placed, write_placed
+from partialslip.output.place import REQUEST_NAME, Request, placed, write_placed
 
 EXACT = ("run", "hertz-shear", "--with", "exact")
 USUAL = Path("results", "a")
@@ -150,7 +150,7 @@ def test_files_of_others_stay():
     (USUAL / "notes.txt").write_text("mine", "utf-8")
     assert answer(plain()) == (USUAL, "")
     assert (USUAL / "notes.txt").read_text("utf-8") == "mine"
-    (USUAL / NAME).unlink()  # as an earlier version left it
+    (USUAL / REQUEST_NAME).unlink()  # as an earlier version left it
     assert answer(plain()) == (own(plain()), f"{USUAL} holds results.json of unknown settings")
 
 
@@ -166,7 +166,7 @@ def test_an_end_without_results_leaves_no_trace():
 
 def test_a_killed_command_takes_no_name():
     USUAL.mkdir(parents=True)
-    (USUAL / NAME).write_text(json.dumps(data("score")), "utf-8")  # killed before the first result
+    (USUAL / REQUEST_NAME).write_text(json.dumps(data("score")), "utf-8")  # killed before the first result
     assert answer(plain()) == (USUAL, "")
 
 

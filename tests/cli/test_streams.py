@@ -12,7 +12,7 @@ import pytest
 
 from partialslip.cli import main
 from partialslip.errors import InputError
-from partialslip.output.lock import NAME, locked
+from partialslip.output.lock import LOCK_NAME, locked
 
 COMMAND = (sys.executable, "-m", "partialslip")
 EXACT = ("run", "hertz-shear", "--with", "exact")
@@ -140,9 +140,9 @@ def test_the_second_in_a_folder_is_told(tmp_path, monkeypatch, refused):
     finally:
         first.kill()
         first.communicate()
-    assert (tmp_path / "out" / NAME).exists()  # a killed command leaves the file, but no lock
+    assert (tmp_path / "out" / LOCK_NAME).exists()  # a killed command leaves the file, but no lock
     assert main([*other, "--force"]) == 0
-    assert not (tmp_path / "out" / NAME).exists()
+    assert not (tmp_path / "out" / LOCK_NAME).exists()
 
 
 @pytest.mark.slow
@@ -154,7 +154,7 @@ def test_terminated_in_order(tmp_path):
     *progress, last = said.decode().splitlines()
     assert (process.returncode, last) == (143, "partialslip: terminated")
     assert all(line.startswith("verify stress: ") for line in progress)
-    assert not (tmp_path / "out" / NAME).exists()
+    assert not (tmp_path / "out" / LOCK_NAME).exists()
 
 
 def test_a_lock_goes_and_takes_empty_folders_with_it(tmp_path):
@@ -166,7 +166,7 @@ def test_a_lock_goes_and_takes_empty_folders_with_it(tmp_path):
         assert folder.exists()
     assert list(tmp_path.iterdir()) == []
     folder.mkdir(parents=True)
-    (folder / NAME).write_text("process 1 on another", "utf-8")  # left by a killed command
+    (folder / LOCK_NAME).write_text("process 1 on another", "utf-8")  # left by a killed command
     with locked(folder):
         (folder / "results.json").touch()
     assert [path.name for path in folder.iterdir()] == ["results.json"]

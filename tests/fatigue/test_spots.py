@@ -38,6 +38,12 @@ def test_a_scene_gets_the_stresses_that_it_asks_for(exact):
     assert asks_for_stresses(SCENE)
     assert asks_for_stresses(plain.replace({"effects.subsurface": True}))
     assert not asks_for_stresses(SCENE.replace({"effects.subsurface": False}))
+
+
+@pytest.mark.parametrize("subsurface", [None, False, True])
+def test_stresses_that_a_run_finds_on_its_way_are_left_out_if_forced_off(subsurface):
+    found = partialslip.run(SCENE.replace({"effects.subsurface": subsurface}), "exact", stresses=True)["exact"]
+    assert (found.surface is None) == (subsurface is False)
     assert hot_spots(SCENE, partialslip.run(SCENE, "exact")["exact"]) == {}
 
 

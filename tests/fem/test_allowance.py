@@ -3,7 +3,7 @@
 import pytest
 
 from partialslip import Allowance, InputError, load_scene, plan, run
-from partialslip_fem import estimate, expense, solve, solving
+from partialslip_fem import estimate, mesh_cost, solve, solving
 
 ASKED = 1e-6
 SCENE = load_scene("hertz-small-tension", [f"fem.accuracy={ASKED!r}"])
@@ -99,7 +99,7 @@ def test_seconds_that_are_left_buy_accuracy_up_to_the_finest(counter):
 
 @pytest.mark.fault
 def test_meshes_taken_to_cost_nothing(counter, monkeypatch):
-    monkeypatch.setattr(expense, "_work", lambda _: 1e-9)
+    monkeypatch.setattr(mesh_cost, "_work", lambda _: 1e-9)
     fem(Allowance(5 * SECONDS, counter))
     assert counter.seconds > 1.1 * 5 * SECONDS
 

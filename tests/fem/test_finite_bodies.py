@@ -247,14 +247,14 @@ def test_steep_pads_are_meshed():
 def test_a_mesh_on_the_way_is_as_good_at_round_faces_as_away_from_the_ends(accuracy):
     """Its errors count. The last mesh, and one that comes near it, are what the accuracy asks for."""
     problem = SimpleNamespace(parts=[SimpleNamespace(extent=(1.0, 1.0), face=np.square)])
-    goal = goals.Outline.at(accuracy, problem)
+    goal = goals.OutlineErrors.at(accuracy, problem)
     away, *_, last = goals.course(0.1, 10.0, 1e-6, 0.05, 4)
-    way = goals.Outline.at(accuracy, problem, away)
+    way = goals.OutlineErrors.at(accuracy, problem, away)
     assert way.facet_error > 3 * goal.facet_error
     assert way.corner_error == goal.corner_error
     assert way.errors["m"] == pytest.approx(way.facet_error)
     assert way.errors["right"] > goals._OF_FACETS["right"] * way.facet_error  # corners, too
-    assert goals.Outline.at(1.0, problem, last) == goals.Outline.at(1.0, problem)
+    assert goals.OutlineErrors.at(1.0, problem, last) == goals.OutlineErrors.at(1.0, problem)
 
 
 @pytest.mark.slow

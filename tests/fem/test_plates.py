@@ -16,7 +16,7 @@ from partialslip import InputError, parse_scene, plan, run
 from partialslip.cli import main
 from partialslip.equivalent import stand_ins
 from partialslip.export.model import outlined
-from partialslip.friction import coupled
+from partialslip.friction import coulomb_coupled
 from partialslip.result.record import PlatesRecord
 from partialslip.scene.writing import scene_toml
 from partialslip.verify.hard_cases.scenes import hard_scene
@@ -137,12 +137,12 @@ def test_displacements_of_plates_are_the_inverse_of_forces(changes, spring):
 @pytest.mark.fault
 def test_an_actuator_that_is_softer_in_steps_than_between_them(monkeypatch):
     """Deliberate fault: steps take an elastic actuator for softer than the path does that leads to them."""
-    step = coupled.LoadStep
+    step = coulomb_coupled.LoadStep
 
     def softer(*given):
         return step(*given[:10], *(actuator and 1.1 * actuator for actuator in given[10:]))
 
-    monkeypatch.setattr(coupled, "LoadStep", softer)
+    monkeypatch.setattr(coulomb_coupled, "LoadStep", softer)
     found = solved()
     given = found.plates.displacement + found.plates.at_points / 3e9
     back = solved({"load.Q": [0.0, 0.0], "load.displacement": given.tolist(), "load.spring": 3e9})

@@ -15,7 +15,7 @@ from scipy.special import ellipk, ellipkm1
 
 import partialslip
 from partialslip import plan
-from partialslip.friction import coupled
+from partialslip.friction import coulomb_coupled
 from partialslip.friction.coupled_step import LoadStep
 from partialslip.friction.coupled_step import solve as solve_step
 from partialslip.friction.even_gap import EvenGap
@@ -23,7 +23,7 @@ from partialslip.friction.pressing import FlatPunch, Punches
 from partialslip.halfplane.punch import Punch as Flats
 from partialslip.judge.means import norm_errors
 from partialslip_fem import solve, solving
-from partialslip_fem.problem import Problem
+from partialslip_fem.problem import ScaledProblem
 
 BETA = 1 / 7
 
@@ -90,12 +90,12 @@ def test_one_step_of_pressing_forgets_what_stuck_early(monkeypatch, pressed):
     assert pressed(0.3).m / pressed(0.3).a == pytest.approx(0.986, abs=2e-3)
 
     def at_once(C, gap, f, *_):
-        zero = coupled.resting(0 * gap)
+        zero = coulomb_coupled.resting(0 * gap)
         kept = 0 * gap
         p, q = solve_step(LoadStep(C.xx, C.yy, C.xy, C.opening, f, 1.0, gap, 0.0, kept), [(zero, zero)])
-        return coupled.Pressed(p, q, 1, {"q": 0.0, "a": 0.0}, (p.x, q.x), f)
+        return coulomb_coupled.Pressed(p, q, 1, {"q": 0.0, "a": 0.0}, (p.x, q.x), f)
 
-    monkeypatch.setattr(coupled, "press_coupled", at_once)
+    monkeypatch.setattr(coulomb_coupled, "press_coupled", at_once)
     wrong = solve(scene(0.3), plan(scene(0.3)))
     assert wrong.m / wrong.a < 0.8
     assert abs(wrong.a - pressed(0.3).a) > 2e-3 * wrong.a
@@ -228,10 +228,10 @@ def test_blocks_are_pressed_as_step_by_step(monkeypatch):
     of = scene(0.2).replace(fem={"size": 0.04}, **blocks(20e-3))
     found = partialslip.run(of, "fem")["fem"]
     assert found.certificate["kkt"] < 1e-10
-    monkeypatch.setattr(coupled, "_nearly_similar", lambda *_: None)
+    monkeypatch.setattr(coulomb_coupled, "_nearly_similar", lambda *_: None)
     off = []
     for most in (8, 32):
-        monkeypatch.setattr(coupled, "_MOST", most)
+        monkeypatch.setattr(coulomb_coupled, "_MOST", most)
         stepped = partialslip.run(of, "fem")["fem"]
         change = found.traction.q2 - np.interp(found.traction.x, stepped.traction.x, stepped.traction.q2)
         off.append(np.linalg.norm(change) / np.linalg.norm(found.traction.q2))
@@ -294,7 +294,7 @@ def test_pressure_where_unlike_half_planes_touch_first(march, fem, monkeypatch):
 
     assert off(fem(1e-3)) < 5e-5
     # deliberate fault: elements are as wide there as they grow
-    monkeypatch.setattr(Problem, "touches_first", None)
+    monkeypatch.setattr(ScaledProblem, "touches_first", None)
     assert off(solve(unlike(), plan(unlike()))) > 2e-4
 
 
@@ -352,8 +352,8 @@ def test_a_pad_is_pressed_with_the_shear_of_the_closed_form(monkeypatch):
     finer, q1 = locked_in(PAD.replace(fem={"accuracy": 1e-4}))
     assert shape(finer)[0] == pytest.approx(amplitude, rel=0.01)
     assert q1.estimate["q1"] < 0.03
-    monkeypatch.setattr(coupled, "_similar", lambda *_: None)
-    monkeypatch.setattr(coupled, "_nearly_similar", lambda *_: None)
+    monkeypatch.setattr(coulomb_coupled, "_similar", lambda *_: None)
+    monkeypatch.setattr(coulomb_coupled, "_nearly_similar", lambda *_: None)
     steps, by_steps = locked_in(PAD.replace(fem={"size": 0.02}, load={"steps": 64}))
     assert shape(steps)[0] == pytest.approx(amplitude, rel=0.05)
     assert by_steps.shares["steps"]["q1"] > 0.1
@@ -366,7 +366,7 @@ def test_a_flat_rounded_pad_is_pressed_as_step_by_step(monkeypatch):
     """Flat punches from the flat to the contact's ends, against 64 steps of all of P, which take longer."""
     inside = PARTS < 0.7  # beside the flat's ends, at 0.74, 64 steps are not enough
     found, result = locked_in(FLAT_PAD)
-    monkeypatch.setattr(coupled, "_similar", lambda *_: None)
+    monkeypatch.setattr(coulomb_coupled, "_similar", lambda *_: None)
     stepped, by_steps = locked_in(FLAT_PAD)
     assert result.counts["pressing_steps"] < by_steps.counts["pressing_steps"] / 4
     off = np.linalg.norm((stepped - found)[inside]) / np.linalg.norm(found[inside])
@@ -387,7 +387,7 @@ def test_a_flat_pressed_like_a_parabola_is_seen(monkeypatch):
 def test_shear_of_a_pad_that_does_not_grow_is_seen(monkeypatch):
     """Deliberate fault: stages of like bodies of a size as of unlike half-planes, whose shear under one force does not
     grow with the half-width. The second punch does not enter the stages, and tells how similar bodies are."""
-    monkeypatch.setattr(coupled, "FlatPunch", lambda *args: FlatPunch(*args[:6], False, *args[7:]))
+    monkeypatch.setattr(coulomb_coupled, "FlatPunch", lambda *args: FlatPunch(*args[:6], False, *args[7:]))
     assert shape(locked_in(PAD)[0])[1] > 0.1
 
 

@@ -8,7 +8,7 @@ from cell_contact import cells, loads
 
 from partialslip.friction import history
 from partialslip.friction.coulomb_constant_pressure import march
-from partialslip.friction.limit import change, limit, settled
+from partialslip.friction.limit import cycle_change, cycles_settled, limit
 
 BOUND = np.array([1.0, 2.0, 0.5, 0.0])
 END, MODE = np.array([0.3, -1.2, 0.1, 0.0]), np.array([0.2, 0.1, -0.05, 0.0])
@@ -52,7 +52,7 @@ def test_skipped_cycles_change_nothing(Qf, sf, monkeypatch):
 
 def ends(changes):
     """Cycle after which cycles end, None if they go on."""
-    return next((count for count in range(1, len(changes) + 1) if settled(changes[:count])), None)
+    return next((count for count in range(1, len(changes) + 1) if cycles_settled(changes[:count])), None)
 
 
 @pytest.mark.parametrize("power", [1, 2])
@@ -73,8 +73,8 @@ def test_changes_too_large_for_rounding_go_on():
 
 def test_a_change_counts_beside_its_bound_and_the_rounding_of_all_forces():
     forces, near = np.array([1.0, 2.0, 0.0]), np.array([1e-7, 2e-7, 0.0])
-    assert change(forces, forces, near, 3.0, 0.0) == 0
-    assert change(forces + 1e-7 * np.eye(3)[0], forces, near, 0.0, 0.0) == pytest.approx(1, rel=1e-6)
-    assert change(forces + 3e-14 * np.eye(3)[2], forces, near, 3.0, 0.0) == pytest.approx(1 / 3, rel=1e-6)
-    assert change(forces + 3e-14 * np.eye(3)[2], forces, near, 0.0, 2e-15) == pytest.approx(1 / 2, rel=1e-6)
-    assert change(0 * forces, 0 * forces, 0 * near, 0.0, 0.0) == 0
+    assert cycle_change(forces, forces, near, 3.0, 0.0) == 0
+    assert cycle_change(forces + 1e-7 * np.eye(3)[0], forces, near, 0.0, 0.0) == pytest.approx(1, rel=1e-6)
+    assert cycle_change(forces + 3e-14 * np.eye(3)[2], forces, near, 3.0, 0.0) == pytest.approx(1 / 3, rel=1e-6)
+    assert cycle_change(forces + 3e-14 * np.eye(3)[2], forces, near, 0.0, 2e-15) == pytest.approx(1 / 2, rel=1e-6)
+    assert cycle_change(0 * forces, 0 * forces, 0 * near, 0.0, 0.0) == 0

@@ -12,7 +12,7 @@ from partialslip.halfplane.contact import contact
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.method import path_dependent
 from partialslip.halfplane.punch import Punch
-from partialslip.halfplane.steady import stick_zone, stick_zones
+from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.run import default_methods
 
@@ -38,7 +38,7 @@ def test_the_condition_is_the_rate_along_the_way(shape):
     pushed that way from the beginning: checked along gradual loading, at random loads."""
     random = np.random.default_rng(5)
     for Qf, sf in zip(random.uniform(0.02, 0.95, 40), 10 ** random.uniform(-1, 1.3, 40), strict=True):
-        zone = stick_zone(Qf, sf, shape)
+        zone = steady_stick_zone(Qf, sf, shape)
         share = np.linspace(0.02, 1, 50)
         _, half_width, s = stick_zones(share * Qf, share * sf, shape)
         left = s * (4 * Qf - half_width * sf) / max(sf, 4 * Qf)  # < 0: against the slip on the left

@@ -9,7 +9,7 @@ from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.phases import Drifting
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import HertzShape
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import steady_stick_zone
 
 # Q_f, s_f, m and n in a; boundary elements that follow the loads event by event, extrapolated, and what they know m to
 KNOWN = [
@@ -61,5 +61,5 @@ def test_shear_adds_up_to_the_load():
 @pytest.mark.fault
 def test_one_step_is_seen():
     """The consistency conditions, which go from load point to load point in one step, leave m 1.7e-2 off."""
-    zone = stick_zone(0.55, 7.0, HertzShape())
+    zone = steady_stick_zone(0.55, 7.0, HertzShape())
     assert abs(cycle(0.55, 7.0).last.zone.left - zone.left) > 1e-2

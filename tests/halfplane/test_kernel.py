@@ -8,7 +8,7 @@ import pytest
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.slip import density
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.halfplane.traction import half_range
 
 LOADS = {"small tension": (0.75, 2.4), "large tension": (0.3, 4.0), "beside the middle": (0.2, 8.0)}
@@ -38,7 +38,7 @@ def solution(request):
     """Shape, Qf, sf, stick zone, and breaks of the tractions."""
     name, load = request.param
     shape, (Qf, sf) = SHAPES[name], LOADS[load]
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     kinks = [-0.5, 0.5] if name != "hertz" else []
     return shape, Qf, sf, zone, np.unique([-1.0, zone.left, zone.right, 1.0, *kinks])
 

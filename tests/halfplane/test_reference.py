@@ -18,7 +18,7 @@ from quadrature import rule
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
@@ -176,7 +176,7 @@ def test_quadrature_of_the_pressure_to_30_digits(flat):
 def test_stick_zones_to_12_digits(flat):
     shape, sample = shape_of(flat), cases(flat)
     for case in sample:
-        found = stick_zone(case.Qf, case.sf, shape)
+        found = steady_stick_zone(case.Qf, case.sf, shape)
         assert found.s == case.zone.s, case
         assert max(errors(case, found)) <= 1e-12, case
 
@@ -218,7 +218,8 @@ def test_a_fault_in_the_conditions_is_caught(fault, monkeypatch):
     sample = [case for case in sample if 1 + case.zone.centre - case.zone.half_width > 0.05]
     fault(monkeypatch)
     worst = {
-        s: [max(errors(c, stick_zone(c.Qf, c.sf, HertzShape()))) for c in sample if c.zone.s == s] for s in (1, -1)
+        s: [max(errors(c, steady_stick_zone(c.Qf, c.sf, HertzShape()))) for c in sample if c.zone.s == s]
+        for s in (1, -1)
     }
     assert max(worst[1]) <= 1e-12
     assert len(worst[-1]) >= 5
@@ -248,7 +249,7 @@ def test_resultant_is_the_shear_force_and_friction_bounds_it(flat):
     """int dq dx = dQ to 1e-13 of f P; |dq| <= 2 f p."""
     shape, random = shape_of(flat), np.random.default_rng(40)
     for Qf, sf in (*LOADS, *zip(random.random(10), 10 ** random.uniform(-3, 2, 10), strict=True)):
-        zone = stick_zone(Qf, sf, shape)
+        zone = steady_stick_zone(Qf, sf, shape)
         left, right = zone.centre - zone.half_width, zone.centre + zone.half_width
         x, weights = rule(np.unique(np.clip([-1.0, *shape.kinks, left, right, 1.0], -1, 1)))
         q = half_range(x, zone, shape)  # dq/2 in f p0; f P is pi/2

@@ -15,7 +15,7 @@ from partialslip.halfplane import slip as slip_module
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.slip import density, dissipation, slip
-from partialslip.halfplane.steady import stick_zone, stick_zones
+from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 
 HERTZ = HertzShape()
@@ -51,7 +51,7 @@ def slip_zones(zone):
 @every_shape
 @every_load
 def test_density_is_the_slope_of_the_slip(Qf, sf, shape):
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     for side, end, last in slip_zones(zone):
         x = end + np.array([0.05, 0.35, 0.6, 0.95]) * (last - end)
         h = 1e-3 * np.min([np.abs(x - place) for place in (end, last, *shape.kinks)], axis=0)
@@ -68,7 +68,7 @@ def test_density_is_the_slope_of_the_slip(Qf, sf, shape):
 @every_shape
 @every_load
 def test_slip_and_slope_vanish_with_the_stick_zone(Qf, sf, shape):
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     inside = zone.centre + zone.half_width * np.linspace(-1, 1, 21) * (1 - 1e-15)
     assert (slip(inside, zone, shape) == 0).all()
     assert (density(inside, zone, shape) == 0).all()
@@ -85,7 +85,7 @@ def test_slip_and_slope_vanish_with_the_stick_zone(Qf, sf, shape):
 @pytest.mark.parametrize(("Qf", "sf"), SMALL)
 def test_closed_form_of_small_tension(Qf, sf):
     """Hertz: the slope is 2 w, the slip c^2 (sinh(2 eta)/2 - eta) at y = e +- c cosh(eta)."""
-    zone = stick_zone(Qf, sf, HERTZ)
+    zone = steady_stick_zone(Qf, sf, HERTZ)
     for side, end, last in slip_zones(zone):
         y = end + np.array([1e-9, 1e-3, 0.1, 0.5, 0.9, 0.999]) * (last - end)
         beyond = side * (y - zone.centre) - zone.half_width
@@ -100,7 +100,7 @@ def test_closed_form_of_small_tension(Qf, sf):
 @pytest.mark.parametrize(("Qf", "sf"), [(0.75, 2.4), (0.3, 4.0), (0.1, 10.0)])
 def test_slope_is_the_strain_under_the_traction(Qf, sf, shape):
     """(1/pi) PV int dq/(y - t) dt + dsigma/4, the relative strain of the surfaces, is the slope of the slip."""
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     m, n = zone.half_width - zone.centre, zone.half_width + zone.centre
     for _, end, last in slip_zones(zone):
         for y in end + np.array([0.3, 0.8]) * (last - end):
@@ -117,7 +117,7 @@ def test_slope_is_the_strain_under_the_traction(Qf, sf, shape):
 @pytest.mark.parametrize("shape", SHAPES[:3], ids=["hertz", "0.1", "0.5"])
 def test_slope_at_the_ends_of_the_contact(shape):
     """It is finite there and where the slip zone leads."""
-    zone = stick_zone(0.75, 2.4, shape)
+    zone = steady_stick_zone(0.75, 2.4, shape)
     x = np.array([-1.0, -1 + 1e-9, 1 - 1e-9, 1.0])
     slopes = density(x, zone, shape)
     assert slopes[[0, 3]] == pytest.approx(slopes[[1, 2]], rel=1e-6)
@@ -167,7 +167,7 @@ def fine_dissipation(zone, shape):
 
 @pytest.mark.parametrize(("Qf", "sf", "shape"), LOOPS)
 def test_friction_dissipates_the_area_of_the_loops(Qf, sf, shape):
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     area = area_of_the_loops(Qf, sf, shape)
     assert area > 0
     assert fine_dissipation(zone, shape) == pytest.approx(area, rel=1e-11)
@@ -194,7 +194,7 @@ def test_loop_of_the_public_api(Qf, sf, shape):
         w = np.tile(weights / (2 * (count - 1)), count - 1)
         area += w @ (Q(x) * displacement(x, 1) + A / 4 * moment(x) * sigma(x, 1))
     assert (loop.displacement[-1], loop.moment[-1]) == pytest.approx((0, 0), abs=1e-12 * loop.moment.max())
-    energy = dissipation(stick_zone(Qf, sf, shape), shape)[2] * A * (f * pressed.p0 * a) ** 2
+    energy = dissipation(steady_stick_zone(Qf, sf, shape), shape)[2] * A * (f * pressed.p0 * a) ** 2
     assert area == pytest.approx(energy, rel=2e-9)
 
 
@@ -210,7 +210,7 @@ def test_an_end_that_answers_the_wrong_way_is_caught(monkeypatch):
     areas = {load: area_of_the_loops(*load, HERTZ) for load in ((0.75, 2.4), (0.3, 4.0))}
     monkeypatch.setattr(slip_module, "_kernels", wrong)
     for load, area in areas.items():
-        assert abs(dissipation(stick_zone(*load, HERTZ), HERTZ)[2] / area - 1) > 0.01
+        assert abs(dissipation(steady_stick_zone(*load, HERTZ), HERTZ)[2] / area - 1) > 0.01
 
 
 @every_shape
@@ -218,7 +218,7 @@ def test_energy_of_small_loads_goes_with_their_cube(shape):
     """Pressure, slip and the slip zones' width all grow from the ends of the contact."""
     Qf = np.array([1e-7, 1e-5, 1e-4])
     for sf in (0.0, 2.0, 10.0):  # shear alone, small and large tension
-        factors = np.array([dissipation(stick_zone(q, sf * q, shape), shape)[2] for q in Qf]) / Qf**3
+        factors = np.array([dissipation(steady_stick_zone(q, sf * q, shape), shape)[2] for q in Qf]) / Qf**3
         assert (factors > 0).all()
         off = np.abs(factors / factors[0] - 1)[1:]
         assert off[0] < 1e-2
@@ -231,7 +231,7 @@ def test_energy_of_shear_on_hertz(Qf):
     first."""
     k = np.arange(1, 4000)
     closed = (np.pi * Qf) ** 2 / (2 * np.pi) * (Qf**k / ((k + 1) * (k + 2))).sum()
-    assert dissipation(stick_zone(Qf, 0.0, HERTZ), HERTZ)[2] == pytest.approx(closed, rel=1e-12)
+    assert dissipation(steady_stick_zone(Qf, 0.0, HERTZ), HERTZ)[2] == pytest.approx(closed, rel=1e-12)
 
 
 # --- as results
@@ -262,7 +262,7 @@ def test_signs_of_the_loads(name):
 def test_reported_in_si_units():
     scene = partialslip.load_scene("hertz-large-tension")
     exact = partialslip.run(scene, ["exact"]).results["exact"]
-    zone = stick_zone(0.4, 4.03, HERTZ)
+    zone = steady_stick_zone(0.4, 4.03, HERTZ)
     length = scene.material.A * scene.friction.f * exact.p0 * exact.a
     assert exact.slip.slip == pytest.approx(length * slip(exact.slip.x / exact.a, zone, HERTZ), rel=1e-9, abs=1e-15)
     energy = dissipation(zone, HERTZ)[2] * scene.material.A * (scene.friction.f * exact.p0 * exact.a) ** 2

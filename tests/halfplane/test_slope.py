@@ -18,7 +18,7 @@ from partialslip.halfplane.loading import loading, one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Conditions
 from partialslip.halfplane.slip import density, slip
-from partialslip.halfplane.steady import stick_zone, stick_zones
+from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.run import default_methods
 
@@ -148,13 +148,13 @@ def test_points_inside_that_would_slip_first_are_refused():
 def test_tractions_are_those_of_boundary_elements(shape, Qf, sf, gf):
     """From nothing, under the bound f p: Qf = Q/(f P), sf = 2 sigma/(f p0)."""
     x, widths, _, (q,) = boundary_elements.march(shape, [(Qf, sf / 2, gf / 2)], count=160, steps=1)
-    h = half_range(x, stick_zone(Qf, sf, shape, gf), shape, gf)
+    h = half_range(x, steady_stick_zone(Qf, sf, shape, gf), shape, gf)
     assert np.sqrt(((h - q) ** 2 @ widths) / (q**2 @ widths)) < 8e-3
 
 
 @pytest.mark.parametrize(("Qf", "sf", "gf"), LOADS)
 def test_slip_is_the_integral_of_its_density(Qf, sf, gf):
-    zone, shape, step = stick_zone(Qf, sf, Punch(0.5), gf), Punch(0.5), 1e-5
+    zone, shape, step = steady_stick_zone(Qf, sf, Punch(0.5), gf), Punch(0.5), 1e-5
     x = np.concatenate([np.linspace(-1, zone.left, 9)[1:-1], np.linspace(zone.right, 1, 9)[1:-1]])
     slopes = (slip(x + step, zone, shape, gf) - slip(x - step, zone, shape, gf)) / (2 * step)
     assert density(x, zone, shape, gf) == pytest.approx(slopes, abs=1e-5)
@@ -169,7 +169,7 @@ def test_the_bound_of_mean_loads_is_the_room_of_the_stick_zone(Qf, sf, gf):
     q = half_range(x, cycle.zone, shape, gf)
     taken = np.abs(q)
     for share in np.arange(1, 100) / 100 if not cycle.turns_round else ():
-        so_far = half_range(x, stick_zone(share * Qf, share * sf, shape, share * gf), shape, share * gf)
+        so_far = half_range(x, steady_stick_zone(share * Qf, share * sf, shape, share * gf), shape, share * gf)
         taken = np.maximum(taken, np.abs(2 * so_far - q))
     room = 2 / np.pi * cycle.zone.half_width * ((shape.pressure(x) - taken) @ np.sin(angle)) * np.pi / 4000
     assert cycle.mean_load_bound == pytest.approx(room, abs=1e-5)
@@ -181,7 +181,7 @@ def test_a_slope_of_the_wrong_sign_is_seen(monkeypatch):
     true = Conditions.sloped
     monkeypatch.setattr(Conditions, "sloped", lambda self, gf, *rest: true(self, -gf, *rest))
     x, widths, _, (q,) = boundary_elements.march(HertzShape(), [(0.3, 2.0, 0.6)], count=160, steps=1)
-    h = half_range(x, stick_zone(0.3, 4.0, HertzShape(), 1.2), HertzShape(), 1.2)
+    h = half_range(x, steady_stick_zone(0.3, 4.0, HertzShape(), 1.2), HertzShape(), 1.2)
     assert np.sqrt(((h - q) ** 2 @ widths) / (q**2 @ widths)) > 0.03
 
 

@@ -9,7 +9,7 @@ import pytest
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import stick_zone, transition
+from partialslip.halfplane.steady import steady_stick_zone, transition
 from partialslip.result import StickZone
 
 HERTZ = HertzShape()
@@ -43,7 +43,7 @@ def test_chi_is_the_modulus():
 @pytest.mark.parametrize("Qf", [1e-6, 0.1, 0.5, 0.9, 0.999])
 def test_continuous_at_the_transition(Qf, shape):
     step = max(1e-10 * transition(Qf, shape), 1e-12)  # what moves an end by more than rounding
-    below, above = (stick_zone(Qf, transition(Qf, shape) + way * step, shape) for way in (-1, 1))
+    below, above = (steady_stick_zone(Qf, transition(Qf, shape) + way * step, shape) for way in (-1, 1))
     assert (below.s, above.s) == (1, -1)
     assert ends(below) == pytest.approx(ends(above), abs=1e-9)
     assert ends(above)[0] == pytest.approx(1, abs=1e-9)  # the left slip zone vanishes there
@@ -57,7 +57,7 @@ def test_transition_is_the_papers_equation_23():
 
 def test_stick_zone_never_vanishes():
     """Its half-width falls like exp(-pi dsigma/(16 f p(e))); 1.849e-8 a at dsigma = 87.8 f p0."""
-    zone, more = stick_zone(0.4, 87.8, HERTZ), stick_zone(0.4, 97.8, HERTZ)
+    zone, more = steady_stick_zone(0.4, 87.8, HERTZ), steady_stick_zone(0.4, 97.8, HERTZ)
     assert zone.half_width == pytest.approx(1.849e-8, rel=1e-3)
     rate = math.pi * 10 / (16 * math.sqrt(1 - zone.centre**2))
     assert math.log(zone.half_width / more.half_width) == pytest.approx(rate, rel=1e-6)
@@ -76,7 +76,7 @@ def test_quadrature_is_as_good_as_the_closed_forms(centre, c, s):
 def test_flat_and_rounded_tends_to_hertz():
     loads = [(0.3, 1.0), (0.3, 4.0)]
     for Qf, sf in loads:
-        zones = [stick_zone(Qf, sf, shape) for shape in (HERTZ, Punch(1e-3), Punch(1e-5))]
+        zones = [steady_stick_zone(Qf, sf, shape) for shape in (HERTZ, Punch(1e-3), Punch(1e-5))]
         off = [abs(zone.centre - zones[0].centre) + abs(zone.half_width - zones[0].half_width) for zone in zones]
         assert off[2] < 3e-5
         assert off[2] == pytest.approx(off[1] / 100, rel=0.3)
@@ -85,10 +85,10 @@ def test_flat_and_rounded_tends_to_hertz():
 @pytest.mark.parametrize("flat", [0.1, 0.9, 0.999])
 def test_flat_under_small_shear_sticks_beyond_the_flat(flat):
     """Without tension the zone is the contact of a smaller load (Ciavarella and Jaeger): never within the flat."""
-    assert stick_zone(1 - 1e-9, 0.0, Punch(flat)).half_width >= flat * (1 - 1e-9)
+    assert steady_stick_zone(1 - 1e-9, 0.0, Punch(flat)).half_width >= flat * (1 - 1e-9)
 
 
 @pytest.mark.parametrize(("Qf", "sf"), [(1.0, 0.0), (1.5, 1.0), (-0.1, 1.0), (0.5, -1.0), (math.nan, 1.0)])
 def test_refuses_what_it_cannot_solve(Qf, sf):
     with pytest.raises(ValueError, match="must be"):
-        stick_zone(Qf, sf, HERTZ)
+        steady_stick_zone(Qf, sf, HERTZ)

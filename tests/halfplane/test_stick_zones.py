@@ -66,7 +66,7 @@ def test_many_loads_are_as_one_by_one(profile):
     zones = stick_zone(pressed, f, 2 * f * pressed.P * Qf, f * pressed.p0 * sf)
     rounding = float(np.finfo(float).eps) * pressed.a  # the centre is a difference of lengths of size a
     for i, j, k in np.ndindex(2, 3, 4):
-        one = steady.stick_zone(Qf[j, 0], sf[k], pressed.shape)
+        one = steady.steady_stick_zone(Qf[j, 0], sf[k], pressed.shape)
         assert zones.centre[i, j, k] == pytest.approx(one.centre * pressed.a, rel=1e-13, abs=rounding)
         assert zones.half_width[i, j, k] == pytest.approx(one.half_width * pressed.a, rel=1e-13)
         assert zones.s[i, j, k] == one.s
@@ -268,7 +268,7 @@ def test_quartic_profile():
 @pytest.mark.parametrize(("Qf", "sf"), [(0.3, 0.5), (0.3, 4.0), (0.8, 30.0)])
 def test_quartic_profile_satisfies_its_consistency_conditions(Qf, sf):
     pressed = quartic()
-    zone = steady.stick_zone(Qf, sf, pressed.shape)
+    zone = steady.steady_stick_zone(Qf, sf, pressed.shape)
     e, c = zone.centre, zone.half_width
     totals = np.zeros(2)
     for side, sign in ((1, 1), (-1, -zone.s)):

@@ -17,7 +17,7 @@ from partialslip.halfplane import stress as stress_module
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.slip import density
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.turning import half_cycle
 
@@ -72,7 +72,7 @@ def turned(Qf, sf, shape):
 def shear(Qf, sf, shape):
     """Places where q is not smooth, and q at load point 2: in closed form, and of gradual loads where slip turns
     round."""
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     if turns_round(Qf, sf, zone.s, zone.centre, zone.half_width):
         change = turned(Qf, sf, shape).whole
         return change.breaks, lambda x: F * change.traction(x) / 2
@@ -131,7 +131,7 @@ def test_sum_of_point_forces(Qf, sf, shape):
 def test_surface_of_small_tension(Qf, sf):
     """Hertz: -p +- 2 f (w - sqrt(x^2 - 1)) + dsigma/4, w and the root counting outside the stick zone and the contact;
     at the trailing edge 2 f sqrt((1 - n)(1 + m)) + dsigma/4."""
-    stress, zone = scaled(HertzShape(), Qf, sf), stick_zone(Qf, sf, HertzShape())
+    stress, zone = scaled(HertzShape(), Qf, sf), steady_stick_zone(Qf, sf, HertzShape())
     x = np.linspace(-3, 3, 601)
     strain = 2 * (outside_root(x, zone.centre, zone.half_width) - outside_root(x, 0.0, 1.0))
     p = HertzShape().pressure(x)
@@ -146,7 +146,7 @@ def test_surface_of_small_tension(Qf, sf):
 def test_surface_is_strained_by_the_slope_of_the_slip(Qf, sf, shape):
     """The bodies' difference is four times the relative strain, by quadrature of p over the slip zones; their sum is
     -2 p and the tension. In the stick zone they are alike."""
-    stress, zone = scaled(shape, Qf, sf), stick_zone(Qf, sf, shape)
+    stress, zone = scaled(shape, Qf, sf), steady_stick_zone(Qf, sf, shape)
     x = np.linspace(-1, 1, 401)[1:-1]
     (_, lower), (_, upper) = stress.surface(x)
     assert lower + upper == pytest.approx(-2 * shape.pressure(x) + F * sf / 2, rel=0, abs=1e-11)
@@ -179,7 +179,7 @@ def test_surface_is_the_limit_of_the_inside(Qf, sf, shape):
 def test_trailing_edge_with_thirty_digits(Qf, sf, flat):
     """Strain at x = 1 by the bounded inversion, 2 w(1)/pi [ int_n^1 p/(w(1-t)) dt - s int_{-1}^{-m} p/(w(1-t)) dt ]."""
     shape = Punch(flat) if flat else HertzShape()
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     with mp.workdps(30):
         e, c, b, p = mp.mpf(zone.centre), mp.mpf(zone.half_width), mp.mpf(flat), pressure(flat)
 
@@ -216,7 +216,7 @@ def test_signs_of_the_loads(Qf, sf):
 
 def test_a_stick_zone_too_narrow_to_be_told_from_a_jump():
     for sf in (60.0, 100.0, 130.0, 400.0):  # down to a half-width of 1e-34 a
-        stress, zone = scaled(HertzShape(), 0.1, sf), stick_zone(0.1, sf, HertzShape())
+        stress, zone = scaled(HertzShape(), 0.1, sf), steady_stick_zone(0.1, sf, HertzShape())
         x = np.array([-0.9, -0.3, 0.1, 0.3, 0.99])
         lower, upper = stress.surface(x)[:, 1]
         assert lower - upper == pytest.approx(2 * F * density(x, zone, HertzShape()), rel=0, abs=1e-12)

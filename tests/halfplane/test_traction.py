@@ -7,7 +7,7 @@ from quadrature import integrate
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.halfplane.traction import adhered, half_range
 
 LOADS = [(0.19, 0.4), (0.75, 2.4), (0.4, 4.03), (0.3, 8.0), (0.0, 3.0), (0.9, 20.0), (0.4, 87.8), (0.5, 2.3431457535)]
@@ -27,7 +27,7 @@ def test_resultant_of_the_pressure(shape):
 @pytest.mark.parametrize(("Qf", "sf"), LOADS[:6])
 def test_what_sticks_does_not_move(Qf, sf, shape):
     """Strains due to dq and tension cancel in the stick zone: (1/pi) PV int dq/(x-s) ds + dsigma/4 = 0."""
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     for x in zone.centre + zone.half_width * np.array([-0.9, -0.5, 0.1, 0.7, 0.95]):
         here = half_range(np.array([x]), zone, shape)[0]
         ends = np.unique(np.clip([-1.0, *shape.kinks, zone.left, x, zone.right, 1.0], -1, 1))
@@ -37,7 +37,7 @@ def test_what_sticks_does_not_move(Qf, sf, shape):
 
 
 def test_small_tension_is_the_superposition_of_two_hertz_tractions():
-    zone = stick_zone(0.75, 2.4, HERTZ)
+    zone = steady_stick_zone(0.75, 2.4, HERTZ)
     x = np.linspace(-1, 1, 100)  # at no end of a zone, which rounding moves
     inner = np.sqrt(np.maximum((0.2 - x) * (x + 0.8), 0))
     assert half_range(x, zone, HERTZ) == pytest.approx(np.sqrt(1 - x**2) - inner, abs=1e-15)
@@ -48,7 +48,7 @@ def test_large_friction_tends_to_the_adhered_traction():
     a, p0, dQ, dsigma, x = 1.0, 1.0, 0.3, 0.5, np.linspace(-0.9, 0.9, 19)
     errors = []
     for f in (100.0, 1e4):
-        zone = stick_zone(dQ / (2 * f * np.pi / 2), dsigma / (f * p0), HERTZ)
+        zone = steady_stick_zone(dQ / (2 * f * np.pi / 2), dsigma / (f * p0), HERTZ)
         errors.append(np.abs(2 * f * half_range(x, zone, HERTZ) - adhered(x, a, dQ, dsigma)).max())
     assert errors[1] < 2e-4
     assert errors[1] == pytest.approx(errors[0] / 100, rel=0.1)
@@ -70,7 +70,7 @@ def test_mean_load_bound_of_large_tension_holds_all_along_the_way(Qf, sf, shape)
     def room(stages):
         least = np.abs(dq)
         for t in np.arange(1, stages) / stages:
-            least = np.maximum(least, np.abs(2 * half_range(x, stick_zone(t * Qf, t * sf, shape), shape) - dq))
+            least = np.maximum(least, np.abs(2 * half_range(x, steady_stick_zone(t * Qf, t * sf, shape), shape) - dq))
         return 2 / np.pi * cycle.zone.half_width * float((shape.pressure(x) - least) @ weights)
 
     # the stages miss the largest by the square of their distance
@@ -87,7 +87,7 @@ def test_the_mean_load_bound_of_an_example():
 @every_shape
 def test_traction_is_continuous_at_the_ends_of_the_zones(shape):
     for Qf, sf in LOADS[:6]:
-        zone = stick_zone(Qf, sf, shape)
+        zone = steady_stick_zone(Qf, sf, shape)
         for end in (zone.centre - zone.half_width, zone.centre + zone.half_width):
             if abs(end) < 1:
                 steps = [np.ptp(half_range(end + np.array([-h, h]), zone, shape)) for h in (1e-6, 1e-8)]

@@ -16,7 +16,13 @@ from unittest.mock import patch
 
 import numpy as np
 
-from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure, coupled, history, path_following
+from partialslip.friction import (
+    coulomb_constant_pressure,
+    coulomb_coupled,
+    coulomb_varying_pressure,
+    history,
+    path_following,
+)
 
 ROUNDING = 1e-13  # in the sizes of the terms that cancel
 SUMMED = 1e-12  # the same, of the sums over nodes or over the steps of a cycle
@@ -188,12 +194,12 @@ def recorded():
     with ExitStack() as patched:
         patched.enter_context(patch.object(path_following.Follower, "leg", leg))
         patched.enter_context(patch.object(path_following.Leg, "mirrored", property(image)))
-        for module in (coulomb_constant_pressure, coulomb_varying_pressure, coupled):
+        for module in (coulomb_constant_pressure, coulomb_varying_pressure, coulomb_coupled):
             patched.enter_context(patch.object(module, "follow", partial(following, module.follow)))
         for module, march in (
             (coulomb_constant_pressure, straight),
             (coulomb_varying_pressure, anew),
-            (coupled, unlike),
+            (coulomb_coupled, unlike),
         ):
             patched.enter_context(patch.object(module, "march", partial(march, module.march)))
         yield marches

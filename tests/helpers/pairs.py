@@ -31,7 +31,7 @@ from partialslip_fem import method as fem_method
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.mortar import transfer
-from partialslip_fem.problem import Problem
+from partialslip_fem.problem import ScaledProblem
 from partialslip_meshes import Mesh, block
 
 METHODS = {"exact": halfplane.solve, "march": marching.solve, "fem": fem_method.solve}
@@ -253,7 +253,7 @@ def the_first_mesh() -> Any:
     true_uniform = fem_method.uniform
     first: list[Adapted] = []
 
-    def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
+    def uniform(problem: ScaledProblem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
         if not first:
             first.append(true_uniform(problem, size, width, clock, *rest))
         return replace(first[0], solution=solving.solve_contact(problem, first[0].solution.bodies, 0, clock))
@@ -334,7 +334,7 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
 
     true_scaled = fem_method.scaled
 
-    def solved_back(*given: Any) -> Problem:  # factors are kept for stretched()
+    def solved_back(*given: Any) -> ScaledProblem:  # factors are kept for stretched()
         return replace(true_scaled(*given), inside=True)
 
     patches = (
@@ -363,7 +363,7 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
         def march(C: Array, x: Array, *rest: Any) -> Any:
             return true_march(C, x + shift, *rest)
 
-        def uniform(problem: Problem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
+        def uniform(problem: ScaledProblem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
             here = true_uniform(problem, size, width, clock, *rest).solution.bodies
             meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here]
             there = replace(

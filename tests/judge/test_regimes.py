@@ -6,7 +6,7 @@ import pytest
 from known import EXACT, SCENE, SHARE, A, F, P, result
 from msgspec.structs import replace as changed
 
-from partialslip.judge.comparison import _barely, _too_near
+from partialslip.judge.verdict import _barely, _too_near
 
 NEXT = 1 - 1e-12
 

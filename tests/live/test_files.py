@@ -31,7 +31,7 @@ def test_one_file(tmp_path, monkeypatch, capsys):
     path = Path("results", "fretting-aluminium-page", "page.html")
     assert capsys.readouterr().out == f"written: {path}\n"
     assert main(["page", "hertz-shear", "--set", "friction.f=0.25", "--out", "here"]) == 0
-    assert sorted(file.name for file in Path("here").iterdir()) == [place.NAME, "page.html"]
+    assert sorted(file.name for file in Path("here").iterdir()) == [place.REQUEST_NAME, "page.html"]
     assert "<h1>hertz-shear</h1>" in Path("here", "page.html").read_text("utf-8")
 
 

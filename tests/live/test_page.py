@@ -11,7 +11,7 @@ import partialslip
 from partialslip import halfplane
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
-from partialslip.halfplane.steady import stick_zone, stick_zones, transition
+from partialslip.halfplane.steady import steady_stick_zone, stick_zones, transition
 from partialslip.halfplane.traction import half_range
 from partialslip.scene.reading import load_scene
 from partialslip.units import engineering
@@ -99,7 +99,7 @@ def test_a_wrong_formula_shows(browser, folder, true, fault):
     "loads", [(0.19, 0.4), (0.75, 2.4), (0.3, 4.0), (0.4, 4.03), (0.3, 8.0), (0.9, 9.0), (0.0, 3.0)]
 )
 def test_tractions(page, loads):
-    zone = stick_zone(*loads, HertzShape())
+    zone = steady_stick_zone(*loads, HertzShape())
     scripts = "hertz.tractions(hertz.stickZone({0}, {1}))", "hertz.meanLoadBound(hertz.stickZone({0}, {1}), {0}, {1})"
     points, bound = (page.run(script.format(*loads)) for script in scripts)
     x, p, q = (np.array([point[key] for point in points]) for key in ("x", "p", "q"))

@@ -18,10 +18,10 @@ from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
-from partialslip.halfplane.steady import stick_zone, stick_zones, transition
+from partialslip.halfplane.steady import steady_stick_zone, stick_zones, transition
 from partialslip.map import files as map_files
 from partialslip.map import grid, place, stick_map
-from partialslip.output.place import NAME
+from partialslip.output.place import REQUEST_NAME
 from partialslip.result import StickZone
 from partialslip.scene.reading import load_scene
 
@@ -41,7 +41,7 @@ FIGURES = [
 
 
 def names(folder):
-    return sorted(path.name for path in folder.iterdir() if path.name != NAME)
+    return sorted(path.name for path in folder.iterdir() if path.name != REQUEST_NAME)
 
 
 def rows(folder):
@@ -93,7 +93,7 @@ def test_table_against_one_zone_at_a_time(hertz):
     assert list(table[0]) == ["Qf", "sf", "m_over_a", "n_over_a", "half_width_over_a", "regime", "loads"]
     for row in table[::37]:
         Qf, sf = float(row["Qf"]), float(row["sf"])
-        zone, turns = stick_zone(Qf, sf, HertzShape()), one_step(Qf, sf, HertzShape()).turns_round
+        zone, turns = steady_stick_zone(Qf, sf, HertzShape()), one_step(Qf, sf, HertzShape()).turns_round
         if turns and row["loads"] == "gradual":
             left, right = steady(Loads(sf, np.pi * Qf), HertzShape()).last.zone
             zone = StickZone((left + right) / 2, (right - left) / 2, 0)
@@ -221,7 +221,7 @@ def test_a_punch_on_the_map(tmp_path, capsys):
     assert capsys.readouterr().out.startswith("flat-rounded: large tension, m = 0.9743951 a, n = 0.4245292 a\n")
     shape = contact(load_scene("flat-rounded")).shape
     for row in rows(tmp_path)[::3]:
-        zone = stick_zone(float(row["Qf"]), float(row["sf"]), shape)
+        zone = steady_stick_zone(float(row["Qf"]), float(row["sf"]), shape)
         assert float(row["m_over_a"]) == pytest.approx(zone.half_width - zone.centre, abs=1e-9)
 
 

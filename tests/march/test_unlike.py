@@ -8,7 +8,7 @@ from scipy.special import xlogy
 
 import partialslip
 from partialslip import load_scene, parse_scene
-from partialslip.friction import coupled
+from partialslip.friction import coulomb_coupled
 from partialslip.friction.even_gap import PARABOLA, EvenGap
 from partialslip.judge.means import norm_errors
 from partialslip.march import punch_growth, unlike
@@ -226,7 +226,7 @@ def test_stages_of_pressing_agree_with_pressing_step_by_step(monkeypatch):
     monkeypatch.setattr(unlike, "PunchGrowth", SimpleNamespace(of=lambda *_: None))
     x, off = np.array([0.3, 0.6, 0.8]) * at_once.a, []
     for most in (8, 32):
-        monkeypatch.setattr(coupled, "_MOST", most)
+        monkeypatch.setattr(coulomb_coupled, "_MOST", most)
         stepped = partialslip.run(scene, "march")["march"]
         off.append(np.abs(stepped.traction.at(x).levels[1] - at_once.traction.at(x).levels[1]).max())
     assert off[1] < 0.02 * np.abs(at_once.traction.q2).max()
@@ -319,7 +319,9 @@ def test_finite_elements_find_the_stick_zone_of_the_punch_beside_the_end():
 def test_a_half_width_that_was_only_assumed_is_found_out(monkeypatch):
     """Deliberate fault: the half-width is assumed 2e-3 off. Both methods share that step, and agree."""
     scene = STIFF.replace(fem={"accuracy": 1e-3})
-    monkeypatch.setattr(coupled, "_settled", lambda _, reach, __, press: (press(wide := 1.002 * reach), wide, 0.0, 1))
+    monkeypatch.setattr(
+        coulomb_coupled, "_settled", lambda _, reach, __, press: (press(wide := 1.002 * reach), wide, 0.0, 1)
+    )
     wrong = [partialslip.run(scene, method)[method].a for method in ("march", "fem")]
     assert np.abs(np.array(wrong) / closed() - 1).min() > 1e-4
 

@@ -9,7 +9,7 @@ from partialslip import InputError, halfplane, load_scene
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
@@ -28,7 +28,7 @@ def edge(zone: StickZone) -> float:
 
 @given(SHEARS, TENSIONS, SHAPES)
 def test_the_zone_lies_in_the_contact_and_meets_its_conditions(Qf, sf, shape):
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     assert 0 < zone.half_width <= 1
     assert abs(zone.centre) + zone.half_width <= 1 + 1e-15
     assert zone.centre <= 1e-15
@@ -44,7 +44,7 @@ def test_the_zone_lies_in_the_contact_and_meets_its_conditions(Qf, sf, shape):
 def test_the_right_end_only_recedes(Qf, more_Qf, sf, more_sf, shape):
     """c K_n dn = -(dQf/2 + c dsf/8): with either load."""
     less, more = sorted((Qf, more_Qf)), sorted((sf, more_sf))
-    n = [[zone.centre + zone.half_width for s in more if (zone := stick_zone(q, s, shape))] for q in less]
+    n = [[zone.centre + zone.half_width for s in more if (zone := steady_stick_zone(q, s, shape))] for q in less]
     assert (np.diff(n, axis=0) <= 1e-12).all()
     assert (np.diff(n, axis=1) <= 1e-12).all()
 
@@ -82,7 +82,7 @@ def test_signs_mirror_the_zone(Qf, sf, signs):
 @given(SHEARS, TENSIONS, SHAPES)
 @example(0.99999, 35.0, HERTZ)  # a zone of 2e-84 leaves no room, and rounding must not make it negative
 def test_shear_stays_within_friction_and_leaves_room_for_a_mean(Qf, sf, shape):
-    zone = stick_zone(Qf, sf, shape)
+    zone = steady_stick_zone(Qf, sf, shape)
     x = np.concatenate([np.sin(np.linspace(-1.57, 1.57, 201)), zone.centre + zone.half_width * np.linspace(-1, 1, 41)])
     q = half_range(np.clip(x, -1, 1), zone, shape)
     assert (np.abs(q) <= shape.pressure(np.clip(x, -1, 1)) + 1e-11).all()

@@ -10,7 +10,7 @@ from pairs import answer, apart, guise, loads, solved, times
 from random_marches import forces
 
 from partialslip import halfplane, load_scene
-from partialslip.halfplane.steady import stick_zone
+from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.march.cells import on_cells
 
 CLOSED = 1e-10  # residuals of a step, in f p0
@@ -81,7 +81,7 @@ def test_march_does_not_mind_sub_steps_of_proportional_loading(Qf, share, large,
     """As long as slip does not turn round on the way: tension below 4 Qf, or so much that it rules to the end."""
     Qf, share = round(Qf, 3), round(share, 3)
     sf = 4.5 + 10 * share if large else share * 3.5 * Qf
-    zone = stick_zone(Qf, sf, halfplane.contact(BASES[name]).shape)
+    zone = steady_stick_zone(Qf, sf, halfplane.contact(BASES[name]).shape)
     assume((zone.s > 0) != large)
     assume(not large or (zone.half_width * sf > 4.5 * Qf and -4 * Qf / sf < zone.centre + zone.half_width))
     assume(zone.half_width > 0.02)

@@ -271,7 +271,7 @@ def test_on_the_command_line(exact, tmp_path, monkeypatch, capsys):
     assert "no bars: none were asked for" in printed
     folder = tmp_path / "results" / "hertz-shear-$a_[red]$"
     assert sorted(path.name for path in folder.iterdir()) == [
-        place.NAME,
+        place.REQUEST_NAME,
         "report.html",
         "results.json",
         "tractions.csv",

@@ -187,7 +187,7 @@ def measured(spread=0.0):
                     seconds = kind * family * 0.1 * math.exp(rate * digits + spread * random.normal())
                     slow = random.uniform(1, 3)
                     costs = {"exact": 0.1 * seconds * slow, "fem": 0.9 * seconds * slow}
-                    yield prices.Measured(partialslip.load_scene(name, settings), costs, 0.7 * slow, 0.5 * slow)
+                    yield prices.MeasuredRun(partialslip.load_scene(name, settings), costs, 0.7 * slow, 0.5 * slow)
 
 
 def priced(known, name="hertz-shear", *settings, **more):
@@ -228,7 +228,7 @@ def test_prices_that_are_not_known_are_not_told():
     assert priced(known, methods=["fem", "exact"]).cpu_s == priced(known).cpu_s
     scattered = prices.fit(measured(1.0), "a machine")
     assert priced(scattered, "hertz-shear", "fem.accuracy=1e-6").cpu_s is None
-    few = prices.fit([run for run in measured() if prices.family(run.scene) == "reversed"], "a machine")
+    few = prices.fit([run for run in measured() if prices.price_family(run.scene) == "reversed"], "a machine")
     assert [*few.families] == ["reversed"]
     with pytest.raises(partialslip.InputError, match="at least 10"):
         prices.fit([], "a machine")
@@ -236,7 +236,7 @@ def test_prices_that_are_not_known_are_not_told():
 
 def test_families_follow_bodies_and_loads():
     def family(*settings):
-        return prices.family(partialslip.load_scene("fretting-aluminium", settings))
+        return prices.price_family(partialslip.load_scene("fretting-aluminium", settings))
 
     assert family() == family("load.Q=[-1e4, 1e4]") == family("fem.accuracy=1e-6") == "reversed"
     assert family("load.Q=[0, 3e4]") == "mean loads, slip turns round"
@@ -252,7 +252,7 @@ def test_a_price_follows_no_gradual_way(monkeypatch):
     """Which takes seconds where a zone inside slips: as many as the run."""
     monkeypatch.setattr("partialslip.halfplane.turning.steady", lambda *_: pytest.fail("followed"))
     turning = partialslip.load_scene("hertz-shear", ["load.Q=[-267035, 267035]", "load.sigma=[-9e8, 9e8]"])
-    assert prices.family(turning) == "slip turns round"
+    assert prices.price_family(turning) == "slip turns round"
 
 
 def test_the_shipped_list_rises_with_accuracy():
@@ -306,7 +306,7 @@ def test_a_price_is_told_and_the_accuracy_reached(tmp_path, capsys):
 
 def test_a_budget_goes_beyond_the_default_accuracy_and_tells_the_estimate(tmp_path, capsys, monkeypatch):
     """Up to the finest accuracy, or to the one that is set."""
-    monkeypatch.setattr(prices, "FINEST", 1e-7)
+    monkeypatch.setattr(prices, "FINEST_ACCURACY", 1e-7)
     for settings, finest in ([], 1e-7), (["--set", "fem.accuracy=1e-3"], 1e-3):
         out = tmp_path / str(finest)
         assert main(["run", "hertz-shear", "--budget", "1000s", *settings, "--out", str(out)]) == 0

@@ -92,7 +92,7 @@ def spied(monkeypatch):
     spy(bodies, "half_plane", "half_plane")
     spy(bodies, "press", "press")
     spy(solving.coulomb_constant_pressure, "march", "march")
-    spy(solving.coupled, "march", "coupled")
+    spy(solving.coulomb_coupled, "march", "coupled")
     spy(condensation.Condensation, "displace", "displace")
     return calls
 

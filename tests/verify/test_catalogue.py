@@ -99,11 +99,11 @@ def test_two_meshes_that_miss_a_zone_do_not_agree(monkeypatch):
 
 def test_a_wrong_zone_has_no_certificate(monkeypatch):
     """Deliberate fault: the exact stick zone is wrong by a millionth."""
-    right = loading.stick_zone
+    right = loading.steady_stick_zone
 
     def wrong(*loads):
         zone = right(*loads)
         return zone._replace(half_width=zone.half_width * (1 + 1e-6))
 
-    monkeypatch.setattr(loading, "stick_zone", wrong)
+    monkeypatch.setattr(loading, "steady_stick_zone", wrong)
     assert ("exact", "certificate") in {found[:2] for found in missed("no-tension", "exact")}

@@ -13,7 +13,7 @@ import numpy as np
 
 from partialslip.batch.job import Job, Sharing, Solved
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import Progress, Task, work_through, workers
+from partialslip.batch.sweep import SweepProgress, Task, work_through, workers
 from partialslip.errors import InputError
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import off_by
@@ -41,7 +41,7 @@ def sweep(
     cores: int | None = None,
     cluster: str | None = None,
     ledger: str | Path | None = None,
-    progress: Progress | None = None,
+    progress: SweepProgress | None = None,
 ) -> "DataFrame":
     """Solve ``scene`` at many points and return a table with one row for each point.
 
@@ -204,7 +204,7 @@ def _stresses(spots: Mapping[str, HotSpot], true: Mapping[str, HotSpot]) -> dict
 
 
 @contextmanager
-def _told(progress: Progress | None, name: str) -> Iterator[Progress]:
+def _told(progress: SweepProgress | None, name: str) -> Iterator[SweepProgress]:
     """Yield ``progress``, or the progress of a bar that is shown on a terminal while the block runs."""
     if progress:
         yield progress

@@ -19,7 +19,7 @@ from partialslip.batch.cluster import Cluster, dask
 from partialslip.batch.ledger import Ledger
 from partialslip.errors import PartialslipError
 
-Progress = Callable[[int, int, float], None]
+SweepProgress = Callable[[int, int, float], None]
 _PULSE = 2.0  # cost: s between checks of a cluster
 _AHEAD = 256  # cost: largest number of submitted tasks: more than a cluster has workers, few enough for the memory
 
@@ -34,7 +34,7 @@ class Task(NamedTuple):
 
 
 def work_through(
-    tasks: Collection[Task], ledger: Ledger, executor: Executor, progress: Progress = lambda *_: None
+    tasks: Collection[Task], ledger: Ledger, executor: Executor, progress: SweepProgress = lambda *_: None
 ) -> None:
     """Do the ``tasks`` that are not in the ``ledger``, and add the outcomes in the order of completion.
 

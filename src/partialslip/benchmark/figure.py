@@ -31,7 +31,7 @@ _ABOVE, _ROW, _AXIS = 3.1, 0.2, 0.7  # display: height of the tractions, of a co
 _CELL = 19.0, 11.0  # display: width and height of a cell, points
 _APART = 0.1  # display: least distance of two columns of cells, in a: more than the width of a cell
 
-Errors = Mapping[str, Mapping[float, float]]
+ErrorsByResolution = Mapping[str, Mapping[float, float]]
 
 
 def problem_svg(problem: Problem, submissions: Sequence[Submission]) -> str:
@@ -103,7 +103,7 @@ def _draw_targets(axes: "Axes", problem: Problem, result: Result) -> None:
         axes.plot(list(some), heights, "o", ms=4, color="black", zorder=3)
 
 
-def _draw_errors(axes: "Axes", errors: Errors) -> None:
+def _draw_errors(axes: "Axes", errors: ErrorsByResolution) -> None:
     """Draw a row for each code, with the error as a number at each place, on the grey of its grade."""
     from matplotlib.path import Path
 

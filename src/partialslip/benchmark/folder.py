@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from partialslip.benchmark.problem import Problem, Target
-from partialslip.benchmark.submission import LARGEST, META, Answer, Meta, Submission, read_meta
-from partialslip.benchmark.tables import Table, completed, read_table, remark
+from partialslip.benchmark.submission import LARGEST_FILE, META, Answer, Meta, Submission, read_meta
+from partialslip.benchmark.tables import TableValues, completed, read_table, remark
 from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes
 from partialslip.output.files import files_in
@@ -23,7 +23,7 @@ class Folder(NamedTuple):
 
     meta: Meta | None
     answers: dict[str, Answer]
-    tables: dict[str, Table]
+    tables: dict[str, TableValues]
     wrong: list[str]
 
     def as_written(self) -> Submission:
@@ -65,7 +65,7 @@ def examined(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> Fo
     path = Path(folder)
     if not path.is_dir():
         return Folder(None, {}, {}, [f"{folder}: must be a folder with {META} and PS-01.json and so on"])
-    meta, answers, tables, wrong = None, dict[str, Answer](), dict[str, Table](), list[str]()
+    meta, answers, tables, wrong = None, dict[str, Answer](), dict[str, TableValues](), list[str]()
     try:
         meta = read_meta(path)
     except InputError as error:
@@ -77,7 +77,7 @@ def examined(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> Fo
             wrong.append(f"{file}: no problem has this number; known are {', '.join(known)}")
             continue
         try:
-            answer = decoded(read_bytes(file, LARGEST), Answer, str(file))
+            answer = decoded(read_bytes(file, LARGEST_FILE), Answer, str(file))
         except InputError as error:
             wrong.append(str(error))
             continue

@@ -41,7 +41,7 @@ class Derivation:
     rough: bool = False
 
 
-Found = Mapping[str, Quantity]
+Quantities = Mapping[str, Quantity]
 
 
 def derivations(problem: Problem) -> tuple[Derivation, ...]:
@@ -89,7 +89,7 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
     progress(f"{problem.number}: {first.words}")
     result = _solved(problem, first)
     values = quantities(problem.scene, result, problem.places)
-    checks: list[tuple[Derivation, Result, Found]] = []
+    checks: list[tuple[Derivation, Result, Quantities]] = []
     for way in others:
         progress(f"{problem.number}: {way.words}")
         other = _solved(problem, way)
@@ -155,7 +155,7 @@ def _of_exact(checked: float, turns: bool) -> float:
     return _DIGITS if checked <= _NEAR else checked
 
 
-def _has_ends(values: Found) -> bool:
+def _has_ends(values: Quantities) -> bool:
     """Whether the ends of the contact say more than its half-width: the middle is off x = 0, or the contact is not the
     same at both load points."""
     if not all(key in values for key in _ENDS):
@@ -171,7 +171,7 @@ def _target(
     way: Derivation,
     result: Result,
     quantity: Quantity,
-    checks: list[tuple[Derivation, Result, Found]],
+    checks: list[tuple[Derivation, Result, Quantities]],
 ) -> Target:
     exact = way.method == "exact"
     said, counted = [], []

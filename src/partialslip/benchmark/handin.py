@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 from partialslip.benchmark.folder import examined
 from partialslip.benchmark.problem import Problem
 from partialslip.benchmark.submission import META, Answer, Meta, Submission
-from partialslip.benchmark.tables import Table, differences
+from partialslip.benchmark.tables import TableValues, differences
 from partialslip.errors import InputError
 from partialslip.inputfile import checksum
 from partialslip.output.files import files_in
@@ -98,7 +98,7 @@ def _inside(file: Path, folder: Path) -> bool:
         return False
 
 
-def _answer_faults(folder: Path, problem: Problem, answer: Answer, table: Table | None) -> Iterator[str]:
+def _answer_faults(folder: Path, problem: Problem, answer: Answer, table: TableValues | None) -> Iterator[str]:
     file, targets = folder / f"{problem.number}.json", problem.targets
     given = {key: value for key, value in answer.values.items() if value is not None and key in targets}
     if not given and not table and not answer.note.strip():

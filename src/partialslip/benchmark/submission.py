@@ -14,12 +14,12 @@ from partialslip.errors import InputError
 from partialslip.inputfile import read_bytes, read_text
 from partialslip.output.files import json_text, write_texts
 from partialslip.output.lock import locked
-from partialslip.output.place import NAME as REQUEST
+from partialslip.output.place import REQUEST_NAME as REQUEST
 from partialslip.scene.reading import parse_toml
 from partialslip.scene.table import NO_TEXT
 from partialslip.strictjson import converted
 
-LARGEST = 2**20  # limit: bytes of a file
+LARGEST_FILE = 2**20  # limit: bytes of a file
 META = "meta.toml"
 # Cyrillic and Greek letters that look like Latin ones.
 _LIKE_LATIN = str.maketrans(
@@ -185,7 +185,7 @@ def add_answer(
             raise InputError(
                 f"--code {code!r}: {path} holds answers of {known!r}: must be the same code, or another folder"
             )
-        if not force and os.path.lexists(file) and read_bytes(file, LARGEST) != text.encode():
+        if not force and os.path.lexists(file) and read_bytes(file, LARGEST_FILE) != text.encode():
             raise InputError(f"{file}: is another answer: name another folder, or replace the answer with --force")
         return write_texts(path, ({} if there else {META: _meta_text(Meta(code, ""))}) | {file.name: text})
 
@@ -205,4 +205,4 @@ def _meta_text(meta: Meta) -> str:
 
 def read_meta(folder: Path) -> Meta:
     """Read ``meta.toml`` in ``folder``. Raises InputError if it cannot be read, or has fields that are not allowed."""
-    return converted(parse_toml(read_text(folder / META, LARGEST), str(folder / META)), Meta, str(folder / META))
+    return converted(parse_toml(read_text(folder / META, LARGEST_FILE), str(folder / META)), Meta, str(folder / META))

@@ -28,7 +28,7 @@ _NAMED = 6  # display: keys of values that are read from a table
 _LEAST = 1e-5  # limit: least such difference, in the scale of the target: a tenth of what grade A allows
 
 
-class Table(NamedTuple):
+class TableValues(NamedTuple):
     """What a table gives: ``values`` by key of the target, SI units, and the ``errors`` of reading them, in the scale
     of the target; infinite where every second row is not enough."""
 
@@ -40,7 +40,7 @@ class Table(NamedTuple):
         return max(_SURE * self.errors[key], _LEAST)
 
 
-def read_table(problem: Problem, file: str | os.PathLike[str], columns: Mapping[str, str] | None = None) -> Table:
+def read_table(problem: Problem, file: str | os.PathLike[str], columns: Mapping[str, str] | None = None) -> TableValues:
     """Read what the tractions in ``file`` give of the targets of ``problem``.
 
     a, m and n are found as :func:`partialslip.score` finds them; p, dq, q1 and q2 are linear between the rows, and the
@@ -60,7 +60,7 @@ def read_table(problem: Problem, file: str | os.PathLike[str], columns: Mapping[
     for key, each in found.items():
         apart = [abs(half[key].value - each.value) / each.scale if key in half else float("inf") for half in halves]
         errors[key] = max(result.estimate.get(each.estimate, 0.0), *apart)
-    return Table({key: each.value for key, each in found.items()}, errors)
+    return TableValues({key: each.value for key, each in found.items()}, errors)
 
 
 def answer_from(problem: Problem, file: str | os.PathLike[str], columns: Mapping[str, str] | None = None) -> Answer:
@@ -80,14 +80,14 @@ def _half(problem: Problem, samples: Samples, origin: str) -> dict[str, Quantity
         return {}
 
 
-def completed(answer: Answer, table: Table) -> Answer:
+def completed(answer: Answer, table: TableValues) -> Answer:
     """The ``answer`` with the values of the ``table`` that it leaves out. A null is no value, and stays."""
     return replace(
         answer, values={key: v for key, v in table.values.items() if key not in answer.values} | answer.values
     )
 
 
-def differences(problem: Problem, answer: Answer, table: Table, name: str) -> Iterator[str]:
+def differences(problem: Problem, answer: Answer, table: TableValues, name: str) -> Iterator[str]:
     """Lines for values of the ``answer`` that differ from the ``table`` of this ``name`` by more than reading it
     explains."""
     for key, value in answer.values.items():
@@ -99,7 +99,7 @@ def differences(problem: Problem, answer: Answer, table: Table, name: str) -> It
             yield f"values.{key} = {value:.9g}: must be {within}, as {name} has it, or left out"
 
 
-def remark(problem: Problem, answer: Answer, table: Table) -> str:
+def remark(problem: Problem, answer: Answer, table: TableValues) -> str:
     """Line about the ``table`` beside an ``answer``: what is read from it, and the grade that it gives without the
     values of the answer. A table that is worse than the values shows."""
     alone = graded(problem, Answer(dict(table.values))).overall

@@ -23,6 +23,7 @@ from partialslip.cli.common import (
     seconds,
 )
 from partialslip.errors import InputError
+from partialslip.methods import METHODS
 
 if TYPE_CHECKING:
     from partialslip.result.state import State
@@ -50,7 +51,7 @@ def add(commands: Commands) -> None:
     )
     add_scene(runs)
     runs.add_argument("--with", dest="methods", metavar="METHODS",
-                      help="methods of exact, march, fem and equivalent, separated by commas (default: fem and, of "
+                      help=f"methods of {', '.join(METHODS)}, separated by commas (default: fem and, of "
                       "half-planes, the reference: exact where it is known, else march)")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
                       help="accuracy of a, m and n, as a fraction of a; tells the predicted CPU seconds where they are "
@@ -73,8 +74,6 @@ def add(commands: Commands) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from partialslip.methods import METHODS
-
     methods = None if options.methods is None else methods_of(options.methods, METHODS)
     check_output(options)
     if options.save == "":
@@ -93,7 +92,8 @@ def _run(options: argparse.Namespace) -> int:
         import partialslip_fem.method  # noqa: F401 - imports count as start
     began = time.process_time()
     price = _price(options, scene, methods, budget, began) if priced else None
-    chosen = sorted({*(methods or default_methods(scene))})
+    taken = methods or default_methods(scene)
+    chosen = sorted({*taken})
     known = {"methods": chosen, "start": options.start and Path(options.start)}
 
     def usual() -> dict[str, object]:
@@ -112,7 +112,7 @@ def _run(options: argparse.Namespace) -> int:
         with working(scene.name) as tell:
             outcome = partialslip.run(
                 scene,
-                methods,
+                taken,
                 subsurface=options.fields,
                 stresses=True,
                 progress=tell,
@@ -175,9 +175,9 @@ def _price(
 
 def _finest(options: argparse.Namespace) -> float:
     """Return the accuracy up to which a budget is spent: with ``--set fem.accuracy`` no finer one than that."""
-    from partialslip.study.cost.prices import FINEST
+    from partialslip.study.cost.prices import FINEST_ACCURACY
 
-    return math.inf if any(each.startswith("fem.accuracy") for each in options.overrides) else FINEST
+    return math.inf if any(each.startswith("fem.accuracy") for each in options.overrides) else FINEST_ACCURACY
 
 
 def _paid(price: "Price", budget: float | None, outcome: "Run", began: float) -> list[str]:

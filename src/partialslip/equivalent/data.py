@@ -30,7 +30,7 @@ class Moments(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Data:
+class HalfPlaneData:
     """Data of half-planes at all load points; arrays (points,).
 
     Parameters
@@ -63,7 +63,7 @@ class Data:
         values = np.array([self.curvature, self.tilt, self.sigma, self.sigma_slope])
         return values / _units(scene)
 
-    def moved(self, scaled: Array, scene: Scene) -> "Data":
+    def moved(self, scaled: Array, scene: Scene) -> "HalfPlaneData":
         """These data with others in their place, ``scaled`` (4, points) as by :meth:`scaled`."""
         curvature, tilt, sigma, sigma_slope = scaled * _units(scene)
         return replace(self, curvature=curvature, tilt=tilt, sigma=sigma, sigma_slope=sigma_slope)
@@ -85,7 +85,7 @@ def moments_of(rig: Rig, scene: Scene, result: Result) -> Moments:
     return Moments(p1 + shares * (p2 - p1), q)
 
 
-def data_of(rig: Rig, scene: Scene, moments: Moments, result: Result, shear: bool) -> Data:
+def data_of(rig: Rig, scene: Scene, moments: Moments, result: Result, shear: bool) -> HalfPlaneData:
     """Data for tractions with ``moments``, projected over the contacts and the stick zone of ``result``. Without
     ``shear`` the strain by shear tractions does not count."""
     A, sigma = scene.material.A, np.array([sigma for _, sigma, *_ in scene.load.points])
@@ -104,7 +104,7 @@ def data_of(rig: Rig, scene: Scene, moments: Moments, result: Result, shear: boo
         centre, c = 0.0, a
     tilt = gap[:, 0] - gap[:, 1] / a * centres
     lost = chebyshev_coefficients(-4 / A * rig.slopes(centre + c * _NODES, shift))
-    return Data(
+    return HalfPlaneData(
         curvature=gap[:, 1] / a,
         tilt=np.where(np.abs(tilt) > _ROUNDING * a / scene.profile.R, tilt, 0.0),
         sigma=sigma + lost[:, 0] - lost[:, 1] / c * centre,

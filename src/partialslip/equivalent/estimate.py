@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.equivalent.data import Data, chebyshev_coefficients, nodes
+from partialslip.equivalent.data import HalfPlaneData, chebyshev_coefficients, nodes
 from partialslip.halfplane import Contact, contact, contact_of
 from partialslip.halfplane.contact import rubbing, tilted_contact
 from partialslip.halfplane.loading import Loading, loading
@@ -55,7 +55,7 @@ class _Look:
 
 
 def estimate(
-    rig: Rig, scene: Scene, seen: Scene, data: Data, coarser: Scene, shear: bool
+    rig: Rig, scene: Scene, seen: Scene, data: HalfPlaneData, coarser: Scene, shear: bool
 ) -> dict[str, dict[str, float]]:
     """Parts of the error estimate by source: ``half-planes``, what they leave out, and ``rig``.
 

@@ -3,12 +3,12 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.equivalent.data import Data, data_of, moments_of
+from partialslip.equivalent.data import HalfPlaneData, data_of, moments_of
 from partialslip.equivalent.estimate import estimate
 from partialslip.equivalent.stresses import stress_errors, with_stresses
 from partialslip.equivalent.words import in_words
@@ -22,7 +22,7 @@ from partialslip.plan import plan as plan_of
 from partialslip.result import Clock, Result
 from partialslip.result.state import State
 from partialslip.rig import Rig
-from partialslip.scene import Bodies, FlatRounded, Hertz, Profile, Scene
+from partialslip.scene import Bodies, Scene
 
 _KEYS = ("a", "left", "right", "m", "n", "p", "q")
 _PRESSED = "bodies that are not mirror images lock shear in when they are pressed, which is not followed; use fem"
@@ -36,7 +36,7 @@ class StandIns(NamedTuple):
 
     result: Result
     scene: Scene
-    data: Data
+    data: HalfPlaneData
 
 
 def solve(
@@ -153,14 +153,14 @@ def _called_for(rig: Rig, scene: Scene) -> Rig:
     return rig.uncoupled if scene.effects.coupling is False else rig
 
 
-def half_planes(scene: Scene, data: Data | None) -> Scene:
+def half_planes(scene: Scene, data: HalfPlaneData | None) -> Scene:
     """The scene of half-planes with the ``data`` that act like the bodies of ``scene``; without data, of half-planes
     that act like no size at all."""
     own = {"moment": None, "varying-pressure": None, "coupling": None}  # of half-planes: their tilt is that of bodies
     plain = scene.replace(bodies=Bodies(), load={"P": scene.P, "a": None, "p0": None}, effects=own)
     if data is None:
         return plain
-    plain = plain.replace(profile=_bent(scene.profile, float(data.curvature.mean())))
+    plain = plain.replace(profile=scene.profile.curved(float(data.curvature.mean())))
     M = np.array([tilted_contact(plain, scene.P, -float(tilt)).moment for tilt in data.tilt])
     load = {
         "Q": [Q for Q, *_ in scene.load.points],
@@ -169,17 +169,6 @@ def half_planes(scene: Scene, data: Data | None) -> Scene:
         "M": M.tolist() if M.any() else None,
     }
     return plain.replace(load=load)
-
-
-def _bent(profile: Profile, curvature: float) -> dict[str, Any]:
-    """Keys of ``profile`` with the ``curvature`` (1/m) added to that of its gap."""
-    if isinstance(profile, Hertz):
-        return {"R": 1 / (1 / profile.R + curvature)}
-    if isinstance(profile, FlatRounded):
-        bow = profile.bow + curvature
-        return {"crown": 1 / bow if bow else None}
-    x, gap = np.array(profile.x), np.array(profile.gap)
-    return {"gap": (gap + curvature * x**2 / 2).tolist(), "tilt": "free"}
 
 
 def _checked(scene: Scene) -> Scene:
@@ -240,7 +229,7 @@ def _pressed(scene: Scene) -> Result:
     return solve_exactly(still, plan_of(still))
 
 
-def _in_range(rig: Rig, scene: Scene, data: Data) -> Scene:
+def _in_range(rig: Rig, scene: Scene, data: HalfPlaneData) -> Scene:
     """Half-planes with the ``data``. Raise InputError if there are none, or if their contact is too large for the rig,
     whose polynomials mean nothing out there."""
     too_small = "bodies: must be larger compared with the contact"

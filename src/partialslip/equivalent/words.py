@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.equivalent.data import Data
+from partialslip.equivalent.data import HalfPlaneData
 from partialslip.halfplane.contact import contact
 from partialslip.rig import Rig
 from partialslip.scene import Hertz, Scene
@@ -69,7 +69,7 @@ def _shares(rig: Rig, scene: Scene) -> tuple[Share, ...]:
     )
 
 
-def in_words(scene: Scene, seen: Scene, data: Data) -> str:
+def in_words(scene: Scene, seen: Scene, data: HalfPlaneData) -> str:
     """The ``data`` of the half-planes ``seen`` that stand for the bodies of ``scene``, in a line."""
     units, (first, second) = scene.units, scene.load.ends
     if isinstance(scene.profile, Hertz) and isinstance(seen.profile, Hertz):

@@ -2,7 +2,7 @@
 
 This project has never run it."""
 
-from partialslip.export.deck import FRAME, bodies, deck_heading, frame_of, load_step
+from partialslip.export.inp_lines import FRAME, bodies, deck_heading, frame_of, load_step
 from partialslip.export.model import Model
 from partialslip.scene import Scene
 

@@ -2,12 +2,12 @@
 
 from typing import Literal
 
-from partialslip.export.deck import FRAME, bodies, deck_heading, frame_of, load_step
+from partialslip.export.inp_lines import FRAME, bodies, deck_heading, frame_of, load_step
 from partialslip.export.model import Model
 from partialslip.scene import Scene
 from partialslip.units import SYSTEMS, Units
 
-Contact = Literal["mortar", "penalty"]
+ContactElements = Literal["mortar", "penalty"]
 
 # accuracy: Penalties, in E/a: pressure over overlap, and shear over slip in stick. With much stiffer penalties
 # version 2.20 does not converge, or converges to q that is off by 16 %. Mortar elements take any; 1e3 would move ends
@@ -38,7 +38,9 @@ def deck_units(scene: Scene, model: Model) -> Units:
     return next((units for units in smaller if units.from_si(model.a, "m") >= _LEAST), smaller[-1])
 
 
-def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar", reading: str | None = None) -> list[str]:
+def calculix_deck(
+    scene: Scene, model: Model, contact: ContactElements = "mortar", reading: str | None = None
+) -> list[str]:
     """Lines of the deck of ``model``, made from ``scene``: a slice as thick as the elements along the contact line.
 
     ``contact`` is "mortar", or "penalty" for surface-to-surface penalties. The last increment of each step is written:
@@ -68,7 +70,7 @@ def calculix_deck(scene: Scene, model: Model, contact: Contact = "mortar", readi
     return lines
 
 
-def _contact(model: Model, contact: Contact) -> list[str]:
+def _contact(model: Model, contact: ContactElements) -> list[str]:
     unit = model.parts[1].E / model.a
     lines = ["*SURFACE INTERACTION, NAME=INTERFACE"]
     if contact == "mortar":

@@ -12,7 +12,7 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
-from partialslip.export.deck import deck_heading
+from partialslip.export.inp_lines import deck_heading
 from partialslip.export.model import Model
 from partialslip.export.parts import MeshedBody
 from partialslip.scene import Scene

@@ -5,16 +5,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices
 from partialslip.scene import Constants, Scene
 
 if TYPE_CHECKING:
     from partialslip_fem.problem import Part as Shape
     from partialslip_meshes import QuadMesh
 
-Indices = npt.NDArray[np.int64]
 
 _CORNERS = 1e-3  # accuracy: largest change of the contact by the elements at corners of finite bodies, relative
 

@@ -10,7 +10,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.fatigue.criteria import RUIZ, Criterion, beyond, check_distance, chosen, criterion
 from partialslip.fatigue.critical_plane import Ruiz, ruiz
-from partialslip.fatigue.cycle import settled, stress_path, unknown_between
+from partialslip.fatigue.cycle import settled_criteria, stress_path, unknown_between
 from partialslip.fatigue.edges import Edge, edges
 from partialslip.fatigue.places import OVER, averaged, depths, largest_at, surface_points
 from partialslip.fatigue.planes import Critical
@@ -177,7 +177,7 @@ def assess(
     x = surface_points(rough_points(scene, result), result.a)
     unknown = unknown_between(result)
     path = partial(stress_path, scene, result, body)
-    phases, changes = settled(scene.load, found, lambda phases: path(phases, x, np.zeros(1)), not unknown)
+    phases, changes = settled_criteria(scene.load, found, lambda phases: path(phases, x, np.zeros(1)), not unknown)
     at = partial(path, phases)
     grid = depths(result.a)
     stress = at(x[:, None], grid)

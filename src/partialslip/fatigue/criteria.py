@@ -17,7 +17,7 @@ from partialslip.fatigue.critical_plane import (
     swt_measure,
 )
 from partialslip.fatigue.invariants import crossland, dang_van
-from partialslip.fatigue.planes import Critical, Measure, critical_plane
+from partialslip.fatigue.planes import Critical, PlaneMeasure, critical_plane
 from partialslip.scene import Body, Elastic, Scene
 from partialslip.units import Dimension
 
@@ -29,7 +29,7 @@ class Known(NamedTuple):
 
     needs: tuple[str, ...] = ()
     of: Dimension = "Pa"
-    measure: Callable[[Elastic, Any], Measure] | None = None
+    measure: Callable[[Elastic, Any], PlaneMeasure] | None = None
     invariant: Callable[[Array, Any], Array] | None = None
     at: Callable[[Array], Critical] | None = None
 
@@ -73,7 +73,7 @@ class Criterion:
     name: str
     of: Dimension
     at: Callable[[Array], Critical]
-    measure: Measure | None = None
+    measure: PlaneMeasure | None = None
 
 
 def chosen(scene: Scene, names: Iterable[str] | None) -> list[str]:

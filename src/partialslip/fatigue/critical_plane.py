@@ -5,7 +5,15 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.fatigue.planes import Critical, Measure, OnPlanes, critical_plane, largest, longest_chord, range_of
+from partialslip.fatigue.planes import (
+    Critical,
+    OnPlanes,
+    PlaneMeasure,
+    critical_plane,
+    largest,
+    longest_chord,
+    range_of,
+)
 from partialslip.result import Result
 
 
@@ -138,7 +146,7 @@ def range_measure(at: OnPlanes) -> Array:
     return range_of(at.normal)
 
 
-def swt_measure(E: float, nu: float) -> Measure:
+def swt_measure(E: float, nu: float) -> PlaneMeasure:
     """Return sigma_max eps_a on planes, of :func:`smith_watson_topper`."""
 
     def measure(at: OnPlanes) -> Array:
@@ -148,13 +156,13 @@ def swt_measure(E: float, nu: float) -> Measure:
     return measure
 
 
-def fatemi_socie_measure(E: float, nu: float, k: float, sigma_y: float) -> Measure:
+def fatemi_socie_measure(E: float, nu: float, k: float, sigma_y: float) -> PlaneMeasure:
     """Return gamma_a (1 + k sigma_max/sigma_y) on planes, of :func:`fatemi_socie`."""
     mu = E / (2 * (1 + nu))
     return lambda at: longest_chord(at.shear) / (2 * mu) * (1 + k / sigma_y * largest(at.normal))
 
 
-def findley_measure(k: float) -> Measure:
+def findley_measure(k: float) -> PlaneMeasure:
     """Return tau_a + k sigma_max on planes, of :func:`findley`."""
     return lambda at: longest_chord(at.shear) / 2 + k * largest(at.normal)
 

@@ -11,7 +11,7 @@ from partialslip.fatigue.critical_plane import with_zz
 from partialslip.result import Result
 from partialslip.scene import Load, Scene
 
-ENDS = np.array([0.0, 0.5])  # phases of load points 1 and 2
+LOAD_POINTS = np.array([0.0, 0.5])  # phases of load points 1 and 2
 _FIRST, _MOST = 8, 64  # accuracy: load points around the cycle: least number, and largest unless the scene has more
 _SETTLED = 1e-6  # accuracy: relative change of the largest value at the surface when the load points are doubled
 _ABOVE = 1e-30  # accuracy: half-widths: points of the upper body's surface, which is not the lower body's
@@ -42,7 +42,7 @@ def phases_of(load: Load, parts: int) -> Array:
 def dense(load: Load, phases: Array) -> Array:
     """Return as many phases (s,) as are ever taken, for curves, which bend at each of them in slip zones; ``phases``
     themselves if they are load points 1 and 2 only."""
-    return phases if len(phases) == len(ENDS) else phases_of(load, max(_MOST // len(load.points), 2))
+    return phases if len(phases) == len(LOAD_POINTS) else phases_of(load, max(_MOST // len(load.points), 2))
 
 
 def unknown_between(result: Result) -> str:
@@ -55,7 +55,7 @@ def unknown_between(result: Result) -> str:
     return ""
 
 
-def settled(
+def settled_criteria(
     load: Load, found: Sequence[Criterion], path: Callable[[Array], Array], known: bool
 ) -> tuple[Array, list[float]]:
     """Return phases (s,) of the cycle at which the largest values of criteria settle, and their relative changes.
@@ -74,7 +74,7 @@ def settled(
     """
     changes = np.full(len(found), np.nan)
     if not known:
-        return ENDS, changes.tolist()
+        return LOAD_POINTS, changes.tolist()
 
     def largest(stress: Array) -> Array:
         return np.array([np.nanmax(each.at(stress).value) for each in found])

@@ -70,7 +70,7 @@ class OnPlanes:
         return self.resolve()
 
 
-Measure = Callable[[OnPlanes], Array]
+PlaneMeasure = Callable[[OnPlanes], Array]
 
 
 def stresses_on(stress: Array, angle: Array, tilt: Array) -> OnPlanes:
@@ -123,7 +123,7 @@ def longest_chord(shear: tuple[Array, Array]) -> Array:
     return np.sqrt(longest)
 
 
-def critical_plane(stress: Array, measure: Measure) -> Critical:
+def critical_plane(stress: Array, measure: PlaneMeasure) -> Critical:
     """Find the plane on which ``measure`` is largest, at each point.
 
     Parameters
@@ -150,7 +150,7 @@ def critical_plane(stress: Array, measure: Measure) -> Critical:
     return Critical(value, angle, tilt)
 
 
-def _in_block(stress: Array, measure: Measure) -> Array:
+def _in_block(stress: Array, measure: PlaneMeasure) -> Array:
     """Value, angle and tilt (3, n) of the critical planes at the points of ``stress`` (s, 4, n)."""
     angle, tilt = _starts(stress, measure)
     point = np.tile(np.arange(stress.shape[2]), (len(angle), 1))
@@ -162,7 +162,7 @@ def _in_block(stress: Array, measure: Measure) -> Array:
     return np.stack([value, (angle + np.pi / 2) % np.pi - np.pi / 2, tilt])
 
 
-def _starts(stress: Array, measure: Measure) -> tuple[Array, Array]:
+def _starts(stress: Array, measure: PlaneMeasure) -> tuple[Array, Array]:
     """Angles and tilts (_STARTS + 2, n) of the sampled planes with the largest local maxima, and of two beside the
     largest."""
     angles, tilts = np.arange(ANGLES) * np.pi / ANGLES, np.linspace(0.0, np.pi / 2, TILTS)
@@ -182,7 +182,9 @@ def _starts(stress: Array, measure: Measure) -> tuple[Array, Array]:
     return np.concatenate([angle, beside]), np.concatenate([tilt, tilts[np.repeat(first % TILTS, 2, axis=0)]])
 
 
-def _climb(stress: Array, measure: Measure, point: Indices, angle: Array, tilt: Array) -> tuple[Array, Array, Array]:
+def _climb(
+    stress: Array, measure: PlaneMeasure, point: Indices, angle: Array, tilt: Array
+) -> tuple[Array, Array, Array]:
     """Climb to maxima of ``measure`` from several planes at each point, all arrays (starts, n), by Newton's method on
     stencils of 3 x 3 planes, which shrink where the maximum is within."""
     shape, point, angle, tilt = angle.shape, point.ravel(), angle.ravel(), tilt.ravel()

@@ -17,7 +17,7 @@ from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Factored, Sides, Solution, solve_bounded
 from partialslip.friction.history import History, Steps, follow, resting, still
 from partialslip.friction.load_path import Path
-from partialslip.friction.path_following import Bounds, Follower, Leg, SlidesError, joined, noise
+from partialslip.friction.path_following import Bounds, Follower, Leg, NothingSticksError, joined, noise
 from partialslip.scene.model import require_carried
 
 _AT = 1e-12  # accuracy: distance from the bound, relative, at which a node is on it
@@ -242,7 +242,7 @@ class _Contact:
             leg = self._follower.leg(
                 Bounds.constant(self._bound), start, change[1:3] @ self._stretch, Q, self._path.stages
             )
-        except SlidesError:  # so near to sliding that rounding lets no node stick: a step still has an answer
+        except NothingSticksError:  # so near to sliding that rounding lets no node stick: a step still has an answer
             return _Done(start, load, change, self._one_step(start, float(load[0]), change, None))
         return _Done(start, load, change, leg.solution, leg)
 

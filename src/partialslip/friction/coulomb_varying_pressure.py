@@ -23,7 +23,7 @@ from partialslip.friction.active_set import Sides, Solution, solve_bounded, spre
 from partialslip.friction.history import History, follow, resting
 from partialslip.friction.load_path import Path
 from partialslip.friction.normal import Presses
-from partialslip.friction.path_following import SlidesError
+from partialslip.friction.path_following import NothingSticksError
 from partialslip.scene.model import require_carried
 
 _INSIDE = 0.4  # accuracy: of the distance from the end at the beginning of a step: where the ratio L is taken
@@ -60,7 +60,9 @@ def march(
         As for :func:`partialslip.friction.coulomb_varying_events.march`.
     """
     if path.followed:
-        with suppress(SlidesError):  # so near to sliding that rounding lets no node stick: steps still have an answer
+        with suppress(
+            NothingSticksError
+        ):  # so near to sliding that rounding lets no node stick: steps still have an answer
             return coulomb_varying_events.march(tangential, stretch, f, press, path, few)
     first, *ways = (len(way) for way in path.fractions)
     cycle = sum(ways)

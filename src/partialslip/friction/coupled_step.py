@@ -22,13 +22,12 @@ from partialslip.friction.active_set import Sides, Solution, solve_bounded
 from partialslip.friction.history import resting
 from partialslip.friction.normal import press
 from partialslip.friction.partition import Factors, Forces, longest
-from partialslip.friction.warm_start import Trail
+from partialslip.friction.warm_start import Pair, Trail
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _PATIENCE = 4  # cost: iterations without progress before the method changes
 _CLOSE = 32  # cost: changes of sides in an iteration without progress below which rounding errors may matter
 
-Pair = tuple[Solution, Solution]
 _Solver = Callable[[Array, Array], Forces]  # forces for the displacements (2, n) that have the totals (2,) or (3,)
 
 

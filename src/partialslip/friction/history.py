@@ -14,7 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
-from partialslip.friction.limit import change, limit, settled
+from partialslip.friction.limit import cycle_change, cycles_settled, limit
 from partialslip.friction.load_path import Path
 from partialslip.friction.zone_ends import turning_points
 
@@ -373,8 +373,8 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
         largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
         bound = f * went[-1][-1][1]
         off = max(float(point.residual.max()) for point in points[-len(went) :])
-        changes.append(change(points[-1].x, points[-1 - len(went)].x, path.settled * bound, largest, off))
-        if settled(changes):
+        changes.append(cycle_change(points[-1].x, points[-1 - len(went)].x, path.settled * bound, largest, off))
+        if cycles_settled(changes):
             break
         ended.append(points[-1].x)
         skipped = limit(ended, bound) if hastens else None

@@ -22,7 +22,7 @@ _CLEAN = 0.1  # accuracy: of the last change: what the progression may leave une
 _STEADY = 0.3  # accuracy: of 1 - ratio: by how much the ratio may change from cycle to cycle
 
 
-def change(forces: Array, before: Array, near: Array, largest: float, off: float) -> float:
+def cycle_change(forces: Array, before: Array, near: Array, largest: float, off: float) -> float:
     """Change of the ``forces`` (n,) over a cycle from those ``before`` it, over what counts as none: ``near`` (n,), and
     the rounding of the ``largest`` sum of forces, without sign, and of displacements, which leave the forces ``off``,
     in the cycle."""
@@ -30,7 +30,7 @@ def change(forces: Array, before: Array, near: Array, largest: float, off: float
     return float(np.divide(np.abs(forces - before), none, out=np.zeros_like(none), where=none > 0).max())
 
 
-def settled(changes: Sequence[float]) -> bool:
+def cycles_settled(changes: Sequence[float]) -> bool:
     """Whether nothing changes any more, from the ``changes`` of all cycles (:func:`change`); or nothing but roundings,
     which narrow stick zones under large tension add up to more: small changes that fall no more."""
     last, before = changes[-_RESTLESS:], changes[:-_RESTLESS]

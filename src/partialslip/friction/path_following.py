@@ -32,7 +32,7 @@ _GIVE = 8  # limit: rounds in which nodes that corrections push beyond their bou
 _MOST = 50  # limit: pivots per node in a leg: a stick zone that crosses the contact moves each node in and out once
 
 
-class SlidesError(PartialslipError):
+class NothingSticksError(PartialslipError):
     """No node sticks."""
 
 
@@ -404,7 +404,7 @@ class _Leg:
             last = self._tableau.sticks[node] and np.count_nonzero(self._tableau.sticks) == 1
             whole = np.inf if last else -self._p[node] / column[node] * way
             if last and not np.isfinite(steps[first]):
-                raise SlidesError("friction: the contact slides; |Q| must be less than f P along the leg")
+                raise NothingSticksError("friction: the contact slides; |Q| must be less than f P along the leg")
             if whole <= steps[first]:
                 total += way * whole
                 self._p += way * whole * column

@@ -6,9 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
@@ -16,7 +15,6 @@ from partialslip.friction.pressing import Pressed
 from partialslip.friction.zone_ends import StickInterval
 
 Errors = dict[str, float]
-Indices = npt.NDArray[np.int64]
 
 _NOTHING = 0.01  # accuracy: of what the accuracy allows: errors of steps that matter to nobody
 _MOST_STEPS = 8  # limit: steps from load point to load point that an accuracy of coupled bodies leads to

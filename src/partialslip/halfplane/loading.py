@@ -15,7 +15,7 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.mean_bound import mean_load_bound
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import dissipation, slip
-from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, UNEVEN_FRICTION, drive, stick_zone, stick_zones
+from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, UNEVEN_FRICTION, drive, steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
 
@@ -232,7 +232,7 @@ def one_step(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> Loading:
 
 
 def _solved(found: Loading) -> Loading:
-    zone = stick_zone(found.Qf, found.sf, found.seen, found.gf)
+    zone = steady_stick_zone(found.Qf, found.sf, found.seen, found.gf)
     if math.isnan(zone.half_width):
         raise InputError(f"load.sigma_slope: {TOO_STEEP}" if found.shape.convex else UNEVEN_FRICTION)
     return replace(found, zone=zone)

@@ -18,7 +18,7 @@ from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
 from partialslip.halfplane.states import Around, constant, sliding_state, without_shear
 from partialslip.halfplane.steady import transition
-from partialslip.halfplane.stress import BEYOND, along_surface
+from partialslip.halfplane.stress import SURFACE_REACH, along_surface
 from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.tractions import ExactTractions, sample
 from partialslip.halfplane.turning import Turning, half_cycle
@@ -72,7 +72,7 @@ def solve(
     tractions = ExactTractions(pressed, f, cycle, found if isinstance(found, Levels) else None)
     breaks = _breaks(scene, pressed, cycle, found)
     x = sample(np.union1d(breaks, [pressed.centre]))
-    far = abs(pressed.centre) + BEYOND * a
+    far = abs(pressed.centre) + SURFACE_REACH * a
     inside = plan.needs("subsurface")
     stress = _stresses(scene, pressed, found) if inside else None
     surface = along_surface(stress.surface, np.concatenate([[-far], breaks, [far]])) if stress else None

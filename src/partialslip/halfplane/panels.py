@@ -15,7 +15,7 @@ _TO_COEFFICIENTS[0] /= 2
 # values at the nodes of each half of a panel from the panel's coefficients
 _VALUES = [np.polynomial.chebyshev.chebvander((_NODES + side) / 2, _DEGREES - 1) for side in (-1, 1)]
 
-Unit = Callable[[Array, Indices], Array]
+UnitDensity = Callable[[Array, Indices], Array]
 
 
 class Panels:
@@ -36,7 +36,7 @@ class Panels:
         ``unit(x, number)``: pressures at ``x`` with the indices ``number``, arrays that broadcast to one shape.
     """
 
-    def __init__(self, span: tuple[float, float], ends: Array, weights: Array, unit: Unit) -> None:
+    def __init__(self, span: tuple[float, float], ends: Array, weights: Array, unit: UnitDensity) -> None:
         # the last member has weight 0 and pads rows of indices
         weights = np.append(weights, 0.0)
         self._unit, self._last = unit, len(ends) - 1

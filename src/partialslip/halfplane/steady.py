@@ -29,7 +29,7 @@ _HELD = 1e-9  # limit: residual of loads above which no stick zone is found
 _FEWER = 2**10  # cost: stick zones at a time whose tractions are compared with the bound
 
 
-def stick_zone(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> StickZone[float]:
+def steady_stick_zone(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> StickZone[float]:
     """Stick zone of one set of loads; see :func:`stick_zones`."""
     centre, half_width, s = stick_zones(Qf, sf, shape, gf)
     return StickZone(float(centre), float(half_width), int(s))

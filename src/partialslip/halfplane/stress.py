@@ -21,7 +21,7 @@ from partialslip.result.fields import AtPoints
 
 _SURFACE = 1e-30  # accuracy: depth of points on the surface, as a fraction of a
 _APART = 1e-12  # accuracy: distance below which breaks are merged, as a fraction of a
-BEYOND = 4.0  # limit: half-widths up to which surface stresses are reported
+SURFACE_REACH = 4.0  # limit: half-widths up to which surface stresses are reported
 
 
 @dataclass(frozen=True)

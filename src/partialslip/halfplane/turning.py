@@ -8,9 +8,9 @@ from functools import cached_property
 from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate_of
-from partialslip.halfplane.gradual_path.from_zero import MOST_CYCLES, from_zero
+from partialslip.halfplane.gradual_path.from_zero import MOST_LOADS, from_zero
+from partialslip.halfplane.gradual_path.gradual_mean_bound import gradual_mean_load_bound
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
-from partialslip.halfplane.gradual_path.mean_bound import gradual_mean_load_bound
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions
@@ -195,7 +195,7 @@ class Followed:
             If the way is not known.
         """
         first = Loads(cycle.turn * cycle.mirror * tension, cycle.turn * shear)
-        return cls(cycle, *from_zero(first, cycle.way, cycles or MOST_CYCLES))
+        return cls(cycle, *from_zero(first, cycle.way, cycles or MOST_LOADS))
 
     @property
     def breaks(self) -> list[float]:

@@ -11,7 +11,7 @@ from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean_pressure import PressurePath, common
 from partialslip.halfplane.remarks import no_stresses, remarks, undetermined
 from partialslip.halfplane.states import Around, sliding_state, varying, without_shear
-from partialslip.halfplane.stress import BEYOND, along_surface
+from partialslip.halfplane.stress import SURFACE_REACH, along_surface
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.varying import Cycle, steady_cycle
 from partialslip.plan import Plan
@@ -83,7 +83,7 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
     why = {} if still else undetermined(regime, turns, loaded)
     if inside and not stress:
         why |= no_stresses(loaded)
-    far = np.array([-1.0, 1.0]) * (abs(sum(largest.ends)) / 2 + BEYOND * largest.a)
+    far = np.array([-1.0, 1.0]) * (abs(sum(largest.ends)) / 2 + SURFACE_REACH * largest.a)
     centre, half_width = ((left + right) / 2, (right - left) / 2) if known else (None, None)
     notes = remarks(regime, turns, why, _SLIDES, _RATCHETS)
     state = SteadyState(regime, centre, half_width, notes, cycle.slips if cycle else None)

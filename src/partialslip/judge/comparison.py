@@ -1,6 +1,5 @@
 """Comparison of a result with a reference: one verdict per quantity."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -8,17 +7,13 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import Accuracy, asked
-from partialslip.judge.measures import Measure, measures
+from partialslip.judge.measures import measures
 from partialslip.judge.outcome import Conclusion, conclude
 from partialslip.judge.reference import reference as reference_of
-from partialslip.judge.verdict import NAN, NO_BAR, Bar, Outcome, Verdict, conditions, judged
+from partialslip.judge.verdict import Bar, Outcome, Verdict, conditions, decide, judge_regime, plus_estimate
 from partialslip.result import Result
-from partialslip.scene import Scene
 from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.shown import Notebook
-
-_TENSIONS = {"small tension", "large tension"}
-_STICKING = {"sticking ends", "no slip"}  # regimes of varying pressure in which an end does not slip throughout
 
 
 @dataclass(frozen=True, repr=False)
@@ -180,110 +175,6 @@ def compare(
     nodal = _nodal_errors(result, reference, scene.friction.f)
     regime = judge_regime(result, reference, scene, applied, unknown)
     return Comparison((*verdicts, regime), conditions(result), *nodal)
-
-
-def plus_estimate(bar: Bar, quantity: str, reference: Result) -> Bar:
-    """Return the bar plus the error estimate of the ``reference``.
-
-    The estimate's share of the state at the beginning does not count: every method is given the same state. Neither
-    does that of a table, which results of earlier versions have.
-    """
-    key = quantity.removesuffix("_1").removesuffix("_2")
-    given = sum(reference.shares.get(source, {}).get(key, 0.0) for source in ("table", "start"))
-    own = reference.estimate.get(key, 0.0) - given
-    if bar.value is None or not own > 0:
-        return bar
-    if own > bar.value:
-        return Bar(None, f"{reference.method} itself is known to {own:.1e} only")
-    return Bar(bar.value + own, bar.reason or f"{bar.value:.1e}, and {own:.1e} of {reference.method}'s own")
-
-
-def decide(measure: Measure, bar: Bar | None, result: Result) -> Verdict:
-    """Judge one ``measure`` of the ``result`` against the ``bar``.
-
-    NaN is missed with or without a bar. A value that only the reference has is missed if there is a bar. A quantity
-    that does not exist for the reference is not judged.
-    """
-    outcome, reason = _decided(measure, bar)
-    return Verdict(
-        quantity=measure.quantity,
-        outcome=outcome,
-        reference=measure.reference,
-        found=measure.found,
-        error=measure.error,
-        bar=None if bar is None or measure.undetermined else bar.value,
-        reason=reason,
-        scale=measure.scale,
-        estimate=result.estimate.get(measure.quantity.removesuffix("_1").removesuffix("_2")),
-    )
-
-
-def _decided(measure: Measure, bar: Bar | None) -> tuple[Outcome, str]:
-    """Return the outcome and the reason for it."""
-    if measure.undetermined:
-        return Outcome.NOT_JUDGED, measure.undetermined
-    if measure.error is not None and not math.isfinite(measure.error):
-        return Outcome.MISSED, NAN
-    if measure.error is None and measure.reference is None:
-        return Outcome.NOT_JUDGED, "the reference has no value"
-    if bar is None or bar.value is None:
-        return Outcome.NOT_JUDGED, (bar and bar.reason) or NO_BAR
-    if measure.error is None:
-        return Outcome.MISSED, "the result has no value where the reference has one"
-    return judged(measure.error, bar.value), bar.reason
-
-
-def judge_regime(
-    result: Result, reference: Result, scene: Scene, bars: Mapping[str, Bar], unknown: Mapping[str, str]
-) -> Verdict:
-    """Judge the name of the regime of ``result`` against ``reference``, with ``bars`` by quantity.
-
-    The regime is not judged in four cases: no quantity has a bar; the slip or stick zone that distinguishes the two
-    names is narrower than the bars of m and n; the mean of Q is nearer to its bound, in f P, than these bars in a: the
-    room for it is an integral over the stick zone; the stick zone is ``unknown`` (by quantity, why).
-    """
-    found, true = result.regime, reference.regime
-    own = bars.get("regime", Bar(1.0))
-    known = [bar.value for bar in bars.values() if bar.value is not None]
-    width = max((bars[key].value or 0.0 for key in ("m", "n") if key in bars), default=0.0)
-    if own.value is None or not known:
-        outcome, reason = Outcome.NOT_JUDGED, own.reason or NO_BAR
-    elif found == true:
-        outcome, reason = Outcome.PASSED, ""
-    elif "m" in unknown:
-        outcome, reason = Outcome.NOT_JUDGED, unknown["m"]
-    elif near := _too_near(result, reference, width * reference.a) or _barely(result, reference, scene, width):
-        outcome, reason = Outcome.NOT_JUDGED, near
-    else:
-        outcome, reason = Outcome.MISSED, f"{found}, not {true}"
-    return Verdict("regime", outcome, true, found, reason=reason)
-
-
-def _too_near(result: Result, reference: Result, width: float) -> str:
-    """Return which zone, narrower than ``width`` (m), alone distinguishes the regimes; empty if there is none."""
-    names, zone = {result.regime, reference.regime}, reference if reference.m is not None else result
-    if zone.m is None or zone.n is None or zone.stick_half_width is None:
-        return ""
-    lefts, rights = zip(*zone.ends, strict=True)
-    slips = (-zone.m - max(lefts), min(rights) - zone.n)  # widths of the slip zones
-    if (names == _TENSIONS or names & _STICKING) and min(slips) <= width:
-        return "a slip zone is narrower than the bar: the transition is nearer than the bar can tell"
-    if "stuck" in names and not names & {"sliding", "ratchets"} and max(slips) <= width:
-        return "both slip zones are narrower than the bar"
-    if (names == _TENSIONS or "sliding" in names) and zone.stick_half_width <= width:
-        return "the stick zone is narrower than the bar"
-    return ""
-
-
-def _barely(result: Result, reference: Result, scene: Scene, share: float) -> str:
-    """Return that the mean of Q is within ``share`` f P of a bound of the ``reference``, if one of both ratchets."""
-    limits, room = reference.limits, share * scene.friction.f * scene.P
-    most = limits.get("Q_mean_most", limits.get("Q_mean", math.inf))
-    least = limits.get("Q_mean_least", -most)
-    names, mean = {result.regime, reference.regime}, scene.load.Q_mean
-    if "ratchets" not in names or "sliding" in names or min(abs(mean - least), abs(mean - most)) > room:
-        return ""
-    return "the mean of Q is nearer to the bound for a steady state than the bar can tell"
 
 
 def _nodal_errors(

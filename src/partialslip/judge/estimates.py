@@ -3,8 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from partialslip.bars import LEAST_SHEAR
-from partialslip.judge.comparison import plus_estimate
-from partialslip.judge.verdict import NO_BAR, Bar, Outcome, Verdict, judged
+from partialslip.judge.verdict import NO_BAR, Bar, Outcome, Verdict, judged, plus_estimate
 from partialslip.result import Result
 
 # limit: Largest ratio of a true error to the method's own estimate of it.

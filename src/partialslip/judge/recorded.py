@@ -53,7 +53,7 @@ def conditions_again(result: ResultRecord, told: Iterable[Verdict] = ()) -> tupl
 
 
 def _outcome(verdict: Verdict) -> Outcome:
-    """Return the outcome that follows from error and bar, as :func:`partialslip.judge.comparison.decide` finds it."""
+    """Return the outcome that follows from error and bar, as :func:`partialslip.judge.verdict.decide` finds it."""
     if verdict.error is None:
         lost = verdict.reason == NAN or (verdict.reference is not None and verdict.bar is not None)
         return Outcome.MISSED if lost else Outcome.NOT_JUDGED

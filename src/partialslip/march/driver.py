@@ -18,6 +18,7 @@ from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
 from partialslip.friction.regime import doubts
 from partialslip.friction.restart import begun, end_state
+from partialslip.friction.step_errors import Errors
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march.cells import off_cells, on_cells
 from partialslip.result import Clock, Result, Slip, SteadyState, Traction
@@ -25,8 +26,6 @@ from partialslip.result.state import State
 from partialslip.scene import Scene
 
 _SHARE = 1 / 3  # cost: largest part of the remaining CPU seconds for one mesh
-
-Errors = dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ L = TypeVar("L", bound=Level)
 
 
 @dataclass(frozen=True)
-class Answer:
+class LastLevel:
     """What a problem tells of its last level, in SI units.
 
     Parameters
@@ -86,7 +85,7 @@ class Answer:
     notes: tuple[str, ...] = ()
 
 
-class Problem(ABC, Generic[L]):
+class CellProblem(ABC, Generic[L]):
     """Bodies that are pressed together and sheared, on cells.
 
     ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``meshes`` are the
@@ -144,11 +143,11 @@ class Problem(ABC, Generic[L]):
         return all(meshed[key] <= max(most - lost.get(key, 0.0), most / 2) for key, most in allowed.items())
 
     @abstractmethod
-    def answer(self, level: L) -> Answer:
+    def answer(self, level: L) -> LastLevel:
         """What the result is made of."""
 
 
-def march(problem: Problem[L], progress: Callable[[str], None]) -> tuple[Result, L]:
+def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Result, L]:
     """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the rest of
     the allowance of its clock does not suffice. Returns the result, and the last level."""
     level: L | None = None
@@ -184,7 +183,7 @@ def march(problem: Problem[L], progress: Callable[[str], None]) -> tuple[Result,
 
 
 def _result(
-    problem: Problem[L],
+    problem: CellProblem[L],
     level: L,
     errors: Errors,
     shares: Mapping[str, Errors],

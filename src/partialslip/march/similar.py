@@ -18,17 +18,17 @@ from partialslip.friction.active_set import spread
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.regime import permanent_zone, steady_state
-from partialslip.friction.step_errors import of_steps, steps_matter
+from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, within
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
-from partialslip.halfplane.stress import BEYOND, along_surface
+from partialslip.halfplane.stress import SURFACE_REACH, along_surface
 from partialslip.halfplane.tractions import CellTractions
 from partialslip.march import driver
 from partialslip.march.cell_stress import CellStresses
 from partialslip.march.cells import compliance, graded_cells, norm_parts, on_cells, relative_change
-from partialslip.march.driver import Answer, Errors
+from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, StressAt, Traction
@@ -90,7 +90,7 @@ class SimilarLevel(driver.Level):
         return [kink for kink in self.kinks if not self.stick.left <= kink <= self.stick.right]
 
 
-class SimilarBodies(driver.Problem[SimilarLevel]):
+class SimilarBodies(driver.CellProblem[SimilarLevel]):
     """Half-planes of like materials, for :func:`partialslip.march.driver.march`; ``added`` as for
     :func:`partialslip.march.method.solve`."""
 
@@ -132,7 +132,7 @@ class SimilarBodies(driver.Problem[SimilarLevel]):
     def step_errors(self, level: SimilarLevel) -> Errors:
         return level.stepped
 
-    def answer(self, level: SimilarLevel) -> Answer:
+    def answer(self, level: SimilarLevel) -> LastLevel:
         normal, scene, history = self.normal, self.scene, level.history
         frame, largest, anew, f = normal.frame, normal.largest, scene.presses_anew, scene.friction.f
         widths, p0 = np.diff(level.vertices), 2 / np.pi * (frame.a / largest.a)
@@ -150,7 +150,7 @@ class SimilarBodies(driver.Problem[SimilarLevel]):
         pressed = level.pressed
         if history:
             pressed = normal.forces(normal.last, level.vertices) if anew else history.end[1]
-        return Answer(
+        return LastLevel(
             a=largest.a,
             p0=largest.p0,
             found=found,
@@ -174,7 +174,7 @@ def add_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock:
         stresses = sliding_state(scene) if scene.slides else without_shear(scene)
     if not stresses:
         return replace(found, undetermined=no_stresses("the contact slides"))
-    far = normal.frame.places([-BEYOND, BEYOND])
+    far = normal.frame.places([-SURFACE_REACH, SURFACE_REACH])
     breaks = np.unique([*far, *normal.frame.places([*normal.ends, *level.zone])])
     surface = along_surface(stresses.surface, breaks)
     return replace(found, surface=surface, stress_at=StressAt(stresses.inside), cost=clock.cost())

@@ -1,7 +1,8 @@
 """Marching of half-planes of unlike materials: pressure and shear step by step, on one set of cells.
 
 Pressure moves the surfaces along x and shear opens the gap, by Dundurs' beta. Each step of the load path is solved for
-both together (:mod:`partialslip.friction.coupled`). Scaled: lengths by sqrt(A R P), forces by P, displacements by A P.
+both together (:mod:`partialslip.friction.coulomb_coupled`). Scaled: lengths by sqrt(A R P), forces by P, displacements
+by A P.
 """
 
 from dataclasses import dataclass, replace
@@ -12,7 +13,7 @@ from msgspec.structs import replace as changed
 
 from partialslip.arrays import Array
 from partialslip.bars import BARS, LEAST_SHEAR
-from partialslip.friction import coupled
+from partialslip.friction import coulomb_coupled
 from partialslip.friction.active_set import Solution, spread
 from partialslip.friction.even_gap import PARABOLA, even_gap
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
@@ -20,12 +21,12 @@ from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.normal import press
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import steady_state, steps_of_coupled
-from partialslip.friction.step_errors import along_path, other_steps, pressed_together, summed
+from partialslip.friction.step_errors import Errors, along_path, other_steps, pressed_together, summed
 from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, read_stick_zone, within
 from partialslip.halfplane.tractions import CoupledTractions
 from partialslip.march import driver
 from partialslip.march.cells import graded_cells, norm_parts, on_cells, relative_change
-from partialslip.march.driver import Answer, Errors
+from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
 from partialslip.plan import Plan
@@ -84,7 +85,7 @@ class UnlikeLevel(driver.Level):
         return [*self.ends[1], *self.ends[0], *((self.stick.left, self.stick.right) if self.stick else ())]
 
 
-class UnlikeBodies(driver.Problem[UnlikeLevel]):
+class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
     """Half-planes of unlike materials, for :func:`partialslip.march.driver.march`: ``beta``, zero without coupling, and
     the flat ``punch`` as which the contact grows under an even ``gap``, if it is one. ``followed`` are the errors of
     the load steps, on the first cells that are not coarse. Twice as many steps would cost twice as much on these and
@@ -123,7 +124,7 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
     def step_errors(self, level: UnlikeLevel) -> Errors:
         return summed(_step_errors(level), self.followed)
 
-    def answer(self, level: UnlikeLevel) -> Answer:
+    def answer(self, level: UnlikeLevel) -> LastLevel:
         scene, history, L, P = self.scene, level.history, self.length, self.scene.P
         widths, stress, pressing = np.diff(level.vertices), P / L, level.pressing
         a = level.a[scene.largest - 1]
@@ -152,7 +153,7 @@ class UnlikeBodies(driver.Problem[UnlikeLevel]):
             cells=level.vertices[on[0] : on[-1] + 2] * L + scene.origin,
         )
         (left1, right1), (left2, right2) = (np.array(level.ends) * L + scene.origin).tolist()
-        return Answer(
+        return LastLevel(
             a=a * L,
             p0=p0 * stress,
             found=found,
@@ -225,11 +226,11 @@ def _solve_on(
             path = replace(path, before=shear)
         under = problem.gap or PARABOLA
         stages = OnCells(problem.punch, vertices, under) if problem.punch else None
-        line = coupled.Nodes(x, widths, ends, None, stages is not None, near=near, stages=stages, under=under)
+        line = coulomb_coupled.Nodes(x, widths, ends, None, stages is not None, near=near, stages=stages, under=under)
         moved = stretched(x, scene.origin / L)
         stretch, allowed = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
         f = scene.friction.at(x * L + scene.origin)
-        history, pressing, first = coupled.march(C, gap, stretch, moved[1], f, path, begins, line, allowed)
+        history, pressing, first = coulomb_coupled.march(C, gap, stretch, moved[1], f, path, begins, line, allowed)
         at_points = tuple(ends(p, q) for p, q in zip(history.pressures, (history.q1, history.q2), strict=True))
         level = UnlikeLevel(vertices, history, None, pressing, first, at_points)  # type: ignore[arg-type]
         return replace(level, stick=_stick_zone(level, problem.punch), kinks=_kinks(level))

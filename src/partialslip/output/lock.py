@@ -16,7 +16,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-NAME = ".partialslip.lock"
+LOCK_NAME = ".partialslip.lock"
 TRIES = 20  # cost: to open and lock a file
 _BEYOND = 1 << 30  # limit: byte locked on Windows: beyond the text, because locked bytes cannot be read
 
@@ -67,7 +67,7 @@ def locked(folder: Path) -> Iterator[None]:
     InputError
         If the folder cannot be written.
     """
-    path, made = folder / NAME, []
+    path, made = folder / LOCK_NAME, []
     try:
         made = [each for each in (folder, *folder.parents) if not each.exists()]
         handle, holder = _taken(path)

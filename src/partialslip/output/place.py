@@ -25,7 +25,7 @@ from partialslip.output.files import write_files, write_new_file, write_texts
 from partialslip.output.lock import FolderInUseError, locked
 from partialslip.strictjson import decoded
 
-NAME = ".partialslip"
+REQUEST_NAME = ".partialslip"
 # Files of results: a folder that holds one of them, but no request, was written by an earlier version or copied.
 RESULTS = ("results.json", "report.html", "ledger.jsonl", "effects.json", "fatigue.json", "map.csv", "page.html",
            "meta.toml")  # fmt: skip
@@ -180,14 +180,14 @@ def _answering(folder: Path, asked: dict[str, Any]) -> Iterator[None]:
     except BaseException:
         with suppress(InputError, OSError):
             if _files(folder) == files and before is None:
-                (folder / NAME).unlink()
+                (folder / REQUEST_NAME).unlink()
             elif _files(folder) == files and before != asked:
                 _write_request(folder, before)
         raise
 
 
 def _write_request(folder: Path, request: Data | None) -> None:
-    write_texts(folder, {NAME: json.dumps(request, indent=1) + "\n"})
+    write_texts(folder, {REQUEST_NAME: json.dumps(request, indent=1) + "\n"})
 
 
 def _other(folder: Path, asked: dict[str, Any]) -> str | None:
@@ -214,7 +214,7 @@ def _asked_by_holder(folder: Path, asked: dict[str, Any]) -> str | None:
 def _request(folder: Path) -> dict[str, Any] | None:
     """Return the request that the files in ``folder`` answer; None if there is none."""
     try:
-        return decoded(read_bytes(folder / NAME, _LARGEST_REQUEST), dict, NAME)
+        return decoded(read_bytes(folder / REQUEST_NAME, _LARGEST_REQUEST), dict, REQUEST_NAME)
     except InputError:  # none, or no JSON
         return None
 

@@ -25,7 +25,7 @@ _ROLLER = 4.5  # display: radius
 _BEYOND = 14.0  # display: largest distance of a pin behind the body
 _ARROW = 34.0  # display: length
 
-Point = tuple[float, float]
+Position = tuple[float, float]
 
 
 def sketch_svg(scene: Scene) -> str:
@@ -110,7 +110,7 @@ def _given(body: Body, way: float) -> list[str]:
     return [*shapes, label, *_column([f"{'lower' if way > 0 else 'upper'}: {body.kind}"], way)]
 
 
-def _face(scene: Scene, half: float, depth: float, way: float) -> list[Point]:
+def _face(scene: Scene, half: float, depth: float, way: float) -> list[Position]:
     """Return the face from left to right; ``depth`` is the height of a curved face, 0 for a flat one."""
     if not depth:
         return [(_MIDDLE - half, _LINE), (_MIDDLE + half, _LINE)]
@@ -147,7 +147,7 @@ def _pin(body: Body, half: float, back: float, way: float) -> list[str]:
             circle, *hung]  # fmt: skip
 
 
-def _plate(start: Point, end: Point, out: Point) -> list[str]:
+def _plate(start: Position, end: Position, out: Position) -> list[str]:
     """Return a rigid plate from ``start`` to ``end``, hatched on the side ``out``."""
     count = max(int(math.dist(start, end) / _HATCH), 2)
     along = ((end[0] - start[0]) / count, (end[1] - start[1]) / count)
@@ -159,7 +159,7 @@ def _plate(start: Point, end: Point, out: Point) -> list[str]:
     return [_line([start, end], width=2.2), *strokes]
 
 
-def _rollers(start: Point, end: Point, out: Point) -> list[str]:
+def _rollers(start: Position, end: Position, out: Position) -> list[str]:
     """Return rollers along a side, and the plate that they roll on."""
     count = max(int(math.dist(start, end) / 26), 2)
     off = (_ROLLER * out[0], _ROLLER * out[1])
@@ -246,7 +246,7 @@ def _column(texts: Sequence[str], way: float) -> list[str]:
     return [_text(_WIDTH - 6, start + 16 * number, text, "end") for number, text in enumerate(texts)]
 
 
-def _wave(start: Point, end: Point) -> list[Point]:
+def _wave(start: Position, end: Position) -> list[Position]:
     """Return a wavy line between two points: the body goes on."""
     x = np.linspace(start[0], end[0], 81)
     y = start[1] + 2.5 * np.sin(np.linspace(0.0, 16 * np.pi, 81))
@@ -258,17 +258,17 @@ def _rectangle(half: float, top: float, back: float, fill: str = "#ebebeb", dash
     return _polygon([(left, top), (right, top), (right, back), (left, back)], fill=fill, dash=dash)
 
 
-def _polygon(points: Sequence[Point], fill: str = "#ebebeb", stroke: str = "#000000", dash: str = "") -> str:
+def _polygon(points: Sequence[Position], fill: str = "#ebebeb", stroke: str = "#000000", dash: str = "") -> str:
     dashed = f' stroke-dasharray="{dash}"' if dash else ""
     return f'<polygon points="{_places(points)}" fill="{fill}" stroke="{stroke}"{dashed}/>'
 
 
-def _line(points: Sequence[Point], width: float = 1.2, dash: str = "") -> str:
+def _line(points: Sequence[Position], width: float = 1.2, dash: str = "") -> str:
     dashed = f' stroke-dasharray="{dash}"' if dash else ""
     return f'<polyline points="{_places(points)}" fill="none" stroke="#000000" stroke-width="{width}"{dashed}/>'
 
 
-def _arrow(start: Point, end: Point, width: float = 1.8) -> str:
+def _arrow(start: Position, end: Position, width: float = 1.8) -> str:
     """Return an arrow with a filled head at ``end``."""
     reach = math.dist(start, end)
     along = ((end[0] - start[0]) / reach, (end[1] - start[1]) / reach)
@@ -277,7 +277,7 @@ def _arrow(start: Point, end: Point, width: float = 1.8) -> str:
     return _line([start, foot], width) + _polygon(head, fill="#000000")
 
 
-def _places(points: Sequence[Point]) -> str:
+def _places(points: Sequence[Position]) -> str:
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
 
 

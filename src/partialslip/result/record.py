@@ -11,8 +11,8 @@ from partialslip.result.cost import Cost
 from partialslip.result.result import EndSlip, Regime, Result
 from partialslip.shown import Short
 
-Number = float | None  # None: NaN or infinite, which JSON cannot hold
-Numbers = tuple[Number, ...]
+JsonNumber = float | None  # None: NaN or infinite, which JSON cannot hold
+Numbers = tuple[JsonNumber, ...]
 R = TypeVar("R", bound=msgspec.Struct)
 
 
@@ -21,7 +21,7 @@ class SlipRecord(Short, msgspec.Struct, frozen=True):
 
     x: Numbers
     slip: Numbers
-    dissipated: Number
+    dissipated: JsonNumber
 
 
 class SurfaceRecord(Short, msgspec.Struct, frozen=True):
@@ -55,8 +55,8 @@ class PlatesRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
     approach: Numbers
     compliance: tuple[Numbers, Numbers]
     loop: tuple[Numbers, ...] | None = None
-    error: Number = None
-    displacement_error: Number = None
+    error: JsonNumber = None
+    displacement_error: JsonNumber = None
     turn: Numbers | None = None
 
 
@@ -71,28 +71,28 @@ class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaul
     ``surface`` and ``traction`` are None if the result has none, and in ledgers, which keep no curves.
     """
 
-    a: Number
-    p0: Number
+    a: JsonNumber
+    p0: JsonNumber
     regime: Regime
-    m: Number
-    n: Number
-    stick_half_width: Number
-    stick_centre: Number
-    p_max: Number
-    contact_ends: tuple[tuple[Number, Number], tuple[Number, Number]]
+    m: JsonNumber
+    n: JsonNumber
+    stick_half_width: JsonNumber
+    stick_centre: JsonNumber
+    p_max: JsonNumber
+    contact_ends: tuple[tuple[JsonNumber, JsonNumber], tuple[JsonNumber, JsonNumber]]
     settings: dict[str, str | float | int]
     counts: dict[str, int]
-    limits: dict[str, Number]
-    certificate: dict[str, Number]
-    last_cycle_change: Number
-    estimate: dict[str, Number]
-    shares: dict[str, dict[str, Number]]
+    limits: dict[str, JsonNumber]
+    certificate: dict[str, JsonNumber]
+    last_cycle_change: JsonNumber
+    estimate: dict[str, JsonNumber]
+    shares: dict[str, dict[str, JsonNumber]]
     undetermined: dict[str, str]
     path_dependent: bool
     notes: tuple[str, ...]
     cost: Cost
     end_slips: tuple[EndSlip, EndSlip] | None = None
-    permanent: tuple[Number, Number] | None = None
+    permanent: tuple[JsonNumber, JsonNumber] | None = None
     slip: SlipRecord | None = None
     surface: SurfaceRecord | None = None
     traction: TractionRecord | None = None
@@ -130,7 +130,7 @@ def plain(value: Any) -> Any:
     return tuple(map(plain, value)) if isinstance(value, tuple) else value
 
 
-def number(value: float | None) -> Number:
+def number(value: float | None) -> JsonNumber:
     """Return ``value`` as a float; None if ``value`` is not finite."""
     return float(value) if value is not None and np.isfinite(value) else None
 

@@ -15,7 +15,7 @@ from partialslip.scene import Scene
 from partialslip.seal import edited, sealed_text
 from partialslip.strictjson import converted, parsed
 
-SCHEMA = "partialslip/rig/2"
+RIG_SCHEMA = "partialslip/rig/2"
 _LARGEST = 2**20  # limit: bytes
 _MOST = 64  # limit: terms
 _Row = Annotated[list[float], msgspec.Meta(min_length=2, max_length=_MOST)]
@@ -50,7 +50,7 @@ def write_rig(rig: Rig, path: str | os.PathLike[str]) -> None:
         If the file cannot be written.
     """
     terms, rough = (_Terms(*(each.tolist() for each in terms)) for terms in (rig.terms, rig.rough))
-    data = _File(SCHEMA, rig.key, rig.reach, terms, rough, rig.edited)
+    data = _File(RIG_SCHEMA, rig.key, rig.reach, terms, rough, rig.edited)
     write_texts(Path(path).parent, {Path(path).name: sealed_text(data)})
 
 
@@ -73,8 +73,8 @@ def load_rig(path: str | os.PathLike[str], scene: Scene | None = None) -> Rig:
     tree = parsed(text, told)
     changed = isinstance(tree, dict) and bool(edited(text, tree))
     found = converted(tree, _File, told)
-    if found.schema != SCHEMA:
-        raise InputError(f"{path}: schema = {found.schema!r}: must be {SCHEMA!r}")
+    if found.schema != RIG_SCHEMA:
+        raise InputError(f"{path}: schema = {found.schema!r}: must be {RIG_SCHEMA!r}")
     count = len(found.terms.xx)
     terms, rough = (_arrays(f"{path}: {name}", getattr(found, name), count) for name in ("terms", "rough"))
     if scene and found.key != key_of(scene):

@@ -1,7 +1,7 @@
 """A rig: what the size and the supports of two bodies add to the displacements of half-planes, as plain data.
 
 The relative displacements of the two surfaces are u (upper body less lower body, along x) and v (opening, along y), as
-in :mod:`partialslip.friction.coupled`. Forces q and p per unit depth at t add to those of half-planes
+in :mod:`partialslip.friction.coulomb_coupled`. Forces q and p per unit depth at t add to those of half-planes
 
     u = A (xx(x, t) q + xy(x, t) p),    v = A (xy(t, x) q + yy(x, t) p),
 

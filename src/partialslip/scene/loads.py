@@ -14,7 +14,7 @@ from partialslip.scene.table import ROUGH, Positive, Table
 _FEW, _MOST = 2, 1000  # limit: least and largest number of load points
 _LISTS = ("Q", "displacement", "Q_found", "sigma", "sigma_slope", "P", "M", "e")
 Turns = Annotated[tuple[float, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
-Forces = Annotated[tuple[Positive, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
+NormalForces = Annotated[tuple[Positive, ...], msgspec.Meta(min_length=_FEW, max_length=_MOST)]
 
 
 class Load(Table, frozen=True, kw_only=True):
@@ -34,7 +34,7 @@ class Load(Table, frozen=True, kw_only=True):
     least ``steps`` load steps between points.
     """
 
-    P: Positive | Forces | None = None
+    P: Positive | NormalForces | None = None
     a: Positive | None = None
     p0: Positive | None = None
     M: float | Turns | None = None

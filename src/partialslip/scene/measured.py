@@ -29,7 +29,7 @@ _COLUMNS = 2  # fixed: x and gap
 _SURE = 5.0  # accuracy: standard deviations of a mean over a smoothing length that are not taken for noise
 _ROUNDING = 1e-12  # accuracy: misfit, relative to the largest gap, that is not taken for noise
 # msgspec 0.20 fails on a union of a number and a tuple of fixed length
-Unit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=2, max_length=2)]
+ColumnUnit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=2, max_length=2)]
 
 
 class ProfileFile(Table, frozen=True, kw_only=True):
@@ -42,7 +42,7 @@ class ProfileFile(Table, frozen=True, kw_only=True):
 
     file: Annotated[str, msgspec.Meta(min_length=1)]
     smooth: Positive
-    unit: Unit | None = None
+    unit: ColumnUnit | None = None
     noise: Positive | None = None
 
 

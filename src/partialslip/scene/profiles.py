@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import msgspec
 import numpy as np
@@ -109,6 +109,10 @@ class Hertz(Even, frozen=True, kw_only=True, tag_field="kind", tag="hertz"):
         """Gap before loading at ``x`` (m), m."""
         return x**2 / (2 * self.R)
 
+    def curved(self, curvature: float) -> dict[str, Any]:
+        """Keys of the profile that has this ``curvature`` (1/m) more."""
+        return {"R": 1 / (1 / self.R + curvature)}
+
     @property
     def widest(self) -> float:
         """Half-width of the widest pad with this profile, m."""
@@ -159,6 +163,11 @@ class FlatRounded(Even, frozen=True, kw_only=True, tag_field="kind", tag="flat-r
     def gap_at(self, x: Array) -> Array:
         """Gap before loading at ``x`` (m), m."""
         return np.maximum(np.abs(x) - self.b, 0.0) ** 2 / (2 * self.R) + np.square(x) * (self.bow / 2)
+
+    def curved(self, curvature: float) -> dict[str, Any]:
+        """Keys of the profile that has this ``curvature`` (1/m) more."""
+        bow = self.bow + curvature
+        return {"crown": 1 / bow if bow else None}
 
     @property
     def widest(self) -> float:
@@ -277,6 +286,10 @@ class Tabulated(Table, frozen=True, kw_only=True, tag_field="kind", tag="tabulat
         at, steps = self.curvature_steps()
         beyond = np.maximum(np.abs(x)[..., None] - at, 0.0)
         return beyond**2 @ steps / 2
+
+    def curved(self, curvature: float) -> dict[str, Any]:
+        """Keys of the profile that has this ``curvature`` (1/m) more."""
+        return {"gap": (np.array(self.gap) + curvature * np.array(self.x) ** 2 / 2).tolist(), "tilt": "free"}
 
     @property
     def widest(self) -> float:

@@ -17,7 +17,7 @@ from partialslip.inputfile import read_text
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
 from partialslip.scene.dimensions import with_units
 from partialslip.scene.measured import ProfileFile, tabulated
-from partialslip.strictjson import KINDS, wanted
+from partialslip.strictjson import JSON_KINDS, wanted
 from partialslip.units import SI, UNITS, Units
 
 _LARGEST_FILE = 500_000  # limit: bytes; a profile and a cycle of 1,000 numbers each take 120,000
@@ -27,7 +27,7 @@ _DEEPEST = 10  # limit: nested tables and arrays; a scene has three levels
 # A dotted key of more than 20 parts: the time of tomllib grows at least like the square of their number.
 _DEEP_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){20}""", re.ASCII)
 _Made = TypeVar("_Made", bound=Table)
-_KINDS = KINDS | {"object": "a table"}
+_KINDS = JSON_KINDS | {"object": "a table"}
 
 
 def shipped_scenes() -> dict[str, str]:

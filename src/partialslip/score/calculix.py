@@ -4,9 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
 from partialslip.units import SYSTEMS, Units
 
@@ -33,8 +32,6 @@ FACE_CORNERS: dict[int, Corners] = {
 _CONTACT = ("CPRESS", "CSHEAR1")
 _STRESS = " contact stress (slave "
 _WIDTH = 12  # fixed: characters of a number
-
-Indices = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)

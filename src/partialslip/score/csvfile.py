@@ -8,7 +8,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.scene import Scene
-from partialslip.score.headers import DIMENSIONS, headings, known, selected
+from partialslip.score.headers import COLUMN_DIMENSIONS, headings, known, selected
 from partialslip.units import SI, Units
 
 _NO_VALUE = ("", "-", "--", "novalue", "no value", "n/a", "na")
@@ -91,8 +91,10 @@ def read_csv(
     table = {column: _numbers([row[column] for row in kept], numbers, names[column], origin) for column in used}
     sums = {name: sum((sign * table[column] for column, sign in each.parts.items()), np.zeros(len(kept)))
             for name, each in wanted.items()}  # fmt: skip
-    values = {name: units.to_si(column, DIMENSIONS[name]) if (unit := wanted[name].unit) is None else column * unit
-              for name, column in sums.items()}  # fmt: skip
+    values = {
+        name: column * unit if (unit := wanted[name].unit) else units.to_si(column, COLUMN_DIMENSIONS[name])
+        for name, column in sums.items()
+    }
     notes = [f"{len(rows) - len(kept)} rows without values were left out"] if len(kept) < len(rows) else []
     expressions = [f"{name} = {each.text}" for name, each in wanted.items() if each.text != name]
     return Columns(values, ", ".join(expressions), tuple(notes), any(each.moment for each in wanted.values()))
@@ -131,7 +133,7 @@ def csv_template(scene: Scene, a: float) -> str:
         f"Nodal forces per depth, {forces}: {of_Fn}, and dFt or Ft1, Ft2.\n"
         f"# The scene: {P}, dQ = {units.labelled(load.dQ, 'N/m', 10)}, "
         f"dsigma = {units.labelled(load.dsigma, 'Pa', 10)}, f = {scene.friction.shown}\n"
-        f"{','.join(units.heading(name, DIMENSIONS[name]) for name in names)}\n"
+        f"{','.join(units.heading(name, COLUMN_DIMENSIONS[name]) for name in names)}\n"
     )
     return head + "".join(f"{point:.9e}{',0' * (len(names) - 1)}\n" for point in x)
 

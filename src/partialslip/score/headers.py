@@ -9,16 +9,16 @@ from partialslip.units import LENGTHS, Dimension
 
 NORMAL = ("p", "Fn")
 FIRST = {"p": "p1", "Fn": "Fn1"}  # the same at load point 1, where the pressure varies
-SHEARS = (("dq",), ("q",), ("q1", "q2"), ("dFt",), ("Ft",), ("Ft1", "Ft2"))
+SHEAR_COLUMNS = (("dq",), ("q",), ("q1", "q2"), ("dFt",), ("Ft",), ("Ft1", "Ft2"))
 
 #: Dimensions of the columns.
-DIMENSIONS: dict[str, Dimension] = {
+COLUMN_DIMENSIONS: dict[str, Dimension] = {
     "x": "m", "p": "Pa", "Fn": "N/m",
     "dq": "Pa", "q": "Pa", "q1": "Pa", "q2": "Pa", "dFt": "N/m", "Ft": "N/m", "Ft1": "N/m", "Ft2": "N/m",
     "p1": "Pa", "Fn1": "N/m",
 }  # fmt: skip
-_OWN = tuple(DIMENSIONS)
-_SHEAR = tuple(name for names in SHEARS for name in names)
+_OWN = tuple(COLUMN_DIMENSIONS)
+_SHEAR = tuple(name for names in SHEAR_COLUMNS for name in names)
 
 #: Other names of x, p and the shear traction at one load point, in lower case, with the sign that makes p positive.
 NAMES = {
@@ -38,7 +38,7 @@ NAMES = {
 }  # fmt: skip
 
 #: Units by name, in SI units.
-UNITS = {
+SI_FACTORS = {
     **LENGTHS, "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "psi": 6894.757293168, "ksi": 6894757.293168,
     "n/m": 1.0, "n/mm": 1e3, "n/m^2": 1.0, "n/mm^2": 1e6, "n/mm2": 1e6, "n/um^2": 1e12,
 }  # fmt: skip
@@ -132,7 +132,7 @@ def _complete(wanted: dict[str, Wanted], names: list[str], origin: str, anew: bo
     """Check for x, one of p and Fn, its value at load point 1 if the pressure varies (``anew``), and the matching
     shear, and put them in this order."""
     normal = [name for name in NORMAL if name in wanted]
-    shears = [shear for shear in SHEARS if set(shear) <= set(wanted)]
+    shears = [shear for shear in SHEAR_COLUMNS if set(shear) <= set(wanted)]
     if "x" not in wanted or len(normal) != 1 or len(shears) != 1:
         shown = ", ".join(repr(name) for name in names)[:100]
         raise InputError(
@@ -181,6 +181,6 @@ def _split(name: str) -> tuple[str, float | None]:
     if parts is None:
         return name, None
     unit = parts["unit"].strip().lower()
-    if unit not in UNITS:
+    if unit not in SI_FACTORS:
         return name, None
-    return parts["name"], UNITS[unit]
+    return parts["name"], SI_FACTORS[unit]

@@ -22,7 +22,7 @@ from partialslip.score.ends import (
     zone_around_peak,
 )
 from partialslip.score.friction import FrictionRead, frictions
-from partialslip.score.samples import FEWEST, Samples
+from partialslip.score.samples import FEWEST_POINTS, Samples
 from partialslip.units import Units
 
 _SLIDES = 0.02  # limit: of 2 f p0: where 2 f p - |dq| is less everywhere, the contact slides
@@ -162,9 +162,11 @@ def _contact(x: Array, p: Array, cells: bool, name: str, origin: str) -> SeenCon
     """Contact under the pressure ``p`` at the points ``x``, (n,); ``name`` is the column's for messages."""
     least = NOISE_FACTOR * noise_level(p, x)
     touching = zone_around_peak(p, least)
-    if touching is None or touching[1] - touching[0] + 1 < FEWEST:
+    if touching is None or touching[1] - touching[0] + 1 < FEWEST_POINTS:
         hint = "; or are the elements of another order (--order)?" if cells else ""
-        raise InputError(f"{origin}: {name}: must exceed its noise at {FEWEST} or more neighbouring points{hint}")
+        raise InputError(
+            f"{origin}: {name}: must exceed its noise at {FEWEST_POINTS} or more neighbouring points{hint}"
+        )
     first, last = touching
     left = read_left_end(x, p, first, last, cells=cells, least=least)
     right = read_right_end(x, p, last, first, cells=cells, least=least)

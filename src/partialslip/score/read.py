@@ -13,22 +13,22 @@ from partialslip.inputfile import check_regular, read_bytes
 from partialslip.scene import Scene
 from partialslip.score.calculix import read_dat, read_frd, stated_units
 from partialslip.score.csvfile import Columns, read_csv
-from partialslip.score.headers import DIMENSIONS, SHEARS
+from partialslip.score.headers import COLUMN_DIMENSIONS, SHEAR_COLUMNS
 from partialslip.score.samples import Samples, samples
 from partialslip.units import Units
 
 TABLES = (".csv", ".txt", ".tsv", ".rpt")
-LARGEST = 1_000_000_000  # limit: bytes of a file
+LARGEST_FILE_READ = 1_000_000_000  # limit: bytes of a file
 _FLAT = 0.05  # limit: of the points' extent along x: largest extent across
 
 
 def check(file: Path) -> None:
     """Raise InputError if ``file`` has no known format or cannot be read."""
-    from partialslip_meshes.pointdata import FORMATS
+    from partialslip_meshes.pointdata import WRITTEN_FORMATS
 
-    if file.suffix.lower() not in (*TABLES, ".frd", ".dat", *FORMATS):
-        raise InputError(f"{file}: must end in {', '.join(TABLES)}, .frd, .dat or {', '.join(sorted(FORMATS))}")
-    check_regular(file, LARGEST)
+    if file.suffix.lower() not in (*TABLES, ".frd", ".dat", *WRITTEN_FORMATS):
+        raise InputError(f"{file}: must end in {', '.join(TABLES)}, .frd, .dat or {', '.join(sorted(WRITTEN_FORMATS))}")
+    check_regular(file, LARGEST_FILE_READ)
 
 
 def read_tractions(
@@ -91,12 +91,12 @@ def read_tractions(
 
 def _in_si(values: dict[str, Array], units: Units) -> Columns:
     """Convert columns in ``units`` to SI units."""
-    return Columns({name: units.to_si(column, DIMENSIONS[name]) for name, column in values.items()})
+    return Columns({name: units.to_si(column, COLUMN_DIMENSIONS[name]) for name, column in values.items()})
 
 
 def text(file: Path) -> str:
     """Decode ``file``, UTF-8 or UTF-16. Raises InputError if it is neither."""
-    data = read_bytes(file, LARGEST)
+    data = read_bytes(file, LARGEST_FILE_READ)
     try:
         return data.decode("utf-16" if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else "utf-8-sig")
     except UnicodeDecodeError as error:
@@ -109,7 +109,7 @@ def _point_data(file: Path, pressures: tuple[str, ...]) -> dict[str, Array]:
 
     check(file)
     points, data = read_point_data(file)
-    shears = [shear for shear in SHEARS if set(shear) <= set(data) and shear[0].startswith(("q", "dq"))]
+    shears = [shear for shear in SHEAR_COLUMNS if set(shear) <= set(data) and shear[0].startswith(("q", "dq"))]
     if not set(pressures) <= set(data) or len(shears) != 1:
         shown = ", ".join(map(repr, data))[:100] or "none"
         asked = " and ".join(pressures)

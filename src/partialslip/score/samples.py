@@ -12,7 +12,7 @@ from partialslip.score.headers import FIRST
 
 _DIGITS = 8  # accuracy: digits of x: numbers with fewer count as rounded
 _WHOLE = 1e-5  # accuracy: of a unit in the last place: deviation from a whole number of units
-FEWEST = 6  # limit: points in contact that locate its ends
+FEWEST_POINTS = 6  # limit: points in contact that locate its ends
 
 
 @dataclass(frozen=True)
@@ -109,9 +109,9 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
         values[1:] /= np.diff(cells)
     for name, p in zip(names[1:pressed], values[1:pressed], strict=True):
         touching = np.count_nonzero(p > 0)
-        if touching < FEWEST:
+        if touching < FEWEST_POINTS:
             hint = "; pressure must be positive" if p.min(initial=0) < 0 else ""
-            raise InputError(f"{origin}: {name} > 0 at {touching} points: must be at least {FEWEST}{hint}")
+            raise InputError(f"{origin}: {name} > 0 at {touching} points: must be at least {FEWEST_POINTS}{hint}")
     p, p1, shears = values[1], (values[2] if pressed > 2 else None), values[pressed:]
     if len(shears) == 2:
         return Samples(x, p, shears[1] - shears[0], shears[0], shears[1], cells, resolution, p1=p1)
@@ -133,7 +133,7 @@ def _resolution(x: Array) -> float:
     """Standard deviation of ``x`` due to rounding to few digits, m; 0 if x has many digits."""
     x = np.unique(x)
     large = x[np.abs(x) > 0.1 * np.abs(x).max(initial=0.0)]
-    if len(large) < FEWEST:
+    if len(large) < FEWEST_POINTS:
         return 0.0
     units = 10.0 ** (np.floor(np.log10(np.abs(large).max())) - np.arange(_DIGITS))
     off = np.abs(large[:, None] / units - np.round(large[:, None] / units)).max(axis=0)

@@ -11,7 +11,7 @@ from typing import Any
 from msgspec.structs import replace
 
 from partialslip.batch.ledger import Ledger, case_key, scene_content
-from partialslip.batch.sweep import Progress, Task, work_through, workers
+from partialslip.batch.sweep import SweepProgress, Task, work_through, workers
 from partialslip.errors import InputError
 from partialslip.inputfile import read_text
 from partialslip.judge import Conclusion, Outcome
@@ -91,7 +91,7 @@ def verify_suite(
     ladder: bool = False,
     pdf: bool = False,
     block: TitleBlock = TitleBlock(),  # noqa: B008 - immutable
-    progress: Progress = lambda *_: None,
+    progress: SweepProgress = lambda *_: None,
 ) -> Verification:
     """Solve and judge the cases of a suite, and write verdicts and report.
 
@@ -156,7 +156,7 @@ def _verify(
     folder: Path,
     processes: int | None,
     pdf: bool,
-    progress: Progress,
+    progress: SweepProgress,
 ) -> Verification:
     ledger = _ledger(folder)
     write_verdicts(folder, settings, {}, finished=False)

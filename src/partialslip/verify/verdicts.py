@@ -20,7 +20,7 @@ from partialslip.strictjson import decoded
 from partialslip.verify.case import CaseVerdict, conclusions, requirement_of
 from partialslip.verify.entry import Settings
 
-SCHEMA = "partialslip/verify/2"
+VERDICTS_SCHEMA = "partialslip/verify/2"
 _FILE = "results.json"
 _SCREEN = 24  # display: rows
 _LARGEST = 2**30  # limit: bytes
@@ -73,7 +73,7 @@ def write_verdicts(folder: Path, settings: Settings, verdicts: Verdicts, finishe
         If the folder cannot be written.
     """
     found = VerificationRecord(
-        schema=SCHEMA,
+        schema=VERDICTS_SCHEMA,
         settings=settings,
         finished=finished,
         versions=versions(),
@@ -92,7 +92,7 @@ def was_finished(folder: Path) -> bool:
         found = decoded(read_bytes(folder / _FILE, _LARGEST), _Finished, _FILE)
     except InputError:
         return False
-    return found.schema == SCHEMA and found.finished
+    return found.schema == VERDICTS_SCHEMA and found.finished
 
 
 def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> None:

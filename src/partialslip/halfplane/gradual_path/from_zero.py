@@ -13,7 +13,7 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
 
-MOST_CYCLES = 30  # limit: loads that tend to the steady state more slowly are not followed
+MOST_LOADS = 30  # limit: loads that tend to the steady state more slowly are not followed
 _REPEATS = 1e-10  # accuracy: change of q over a cycle, in f p0, that is none: states are interpolated to this tolerance
 _NEARLY = 1e-6  # accuracy: the same that is none where no more cycles follow
 _HELD = 1e-6  # limit: violation of a condition, in f p0, above which a way does not hold

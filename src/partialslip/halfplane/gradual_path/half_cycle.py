@@ -15,7 +15,7 @@ from partialslip.halfplane.gradual_path.retreat import Retreat, Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common_zones, lasting
 from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.steady import stick_zone, stick_zones
+from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 
 # limit: most half cycles, and those in which the change does not become less: they do not settle
@@ -193,7 +193,7 @@ def stuck(stages: Sequence[Stage]) -> tuple[float, float]:
 
 def once(loads: Loads, shape: Shape) -> Tractions:
     """Half of the change of q by a single step of the ``loads``, on a pressure ``shape``."""
-    zone = stick_zone(loads.shear / math.pi, loads.tension, shape)
+    zone = steady_stick_zone(loads.shear / math.pi, loads.tension, shape)
 
     def half(from_low: Array, from_high: Array) -> Array:
         del from_high

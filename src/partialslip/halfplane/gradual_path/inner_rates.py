@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.arrays import Array
 
 L, A, B, R, Z = range(5)  # the four ends, and z0
-DEGREES = 20  # accuracy: nodes of a panel
+PANEL_NODES = 20  # accuracy: nodes of a panel
 PAST = 28  # accuracy: nodes of integrals over part of a panel, or over panels that are past
 _LEAST = 1e-300  # accuracy: a distance that is not zero
 _STILL = 1e-3  # accuracy: way below which an end hardly moves
@@ -17,11 +17,11 @@ _FALLS = 0.1  # cost: a Newton step over the one before
 RATE = 1.6  # accuracy: logarithm by which the width of a vanishing interval falls in a panel
 
 
-_ANGLES = np.pi * (np.arange(DEGREES) + 0.5) / DEGREES
+_ANGLES = np.pi * (np.arange(PANEL_NODES) + 0.5) / PANEL_NODES
 _NODES = (1 - np.cos(_ANGLES)) / 2
-TO_COEFFICIENTS = np.polynomial.chebyshev.chebvander(2 * _NODES - 1, DEGREES - 1).T * 2 / DEGREES
+TO_COEFFICIENTS = np.polynomial.chebyshev.chebvander(2 * _NODES - 1, PANEL_NODES - 1).T * 2 / PANEL_NODES
 TO_COEFFICIENTS[0] /= 2
-_BARYCENTRIC = (-1.0) ** np.arange(DEGREES) * np.sin(_ANGLES)
+_BARYCENTRIC = (-1.0) ** np.arange(PANEL_NODES) * np.sin(_ANGLES)
 
 
 def cardinal(s: Array) -> Array:
@@ -73,7 +73,7 @@ def _map(
         own,
         weights * 2 * _NODES[:, None] * y * slope(own),
         cardinal(own),
-        cardinal(own) - np.eye(DEGREES)[:, None],
+        cardinal(own) - np.eye(PANEL_NODES)[:, None],
         share(_NODES),
         cardinal(place(SHARES, RESTS)),
         cardinal(y),

@@ -15,8 +15,8 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.inner_rates import (
     DECAY,
-    DEGREES,
     LAST,
+    PANEL_NODES,
     RATE,
     SINE,
     A,
@@ -416,7 +416,9 @@ class Way(Seen):
             offsets = found
             ends = begin[:4, None] + offsets[:4]
             slopes = self._slopes(ends, free)
-            residual, matrix, by_length = (np.zeros((count, DEGREES, *more)) for more in ((), (count, DEGREES), ()))
+            residual, matrix, by_length = (
+                np.zeros((count, PANEL_NODES, *more)) for more in ((), (count, PANEL_NODES), ())
+            )
             own = np.tensordot(offsets, by.own_cardinal, (1, 2))  # (5, nodes, points)
             for row, end in enumerate(free):
                 right, factor = end in (B, R), (1.0 if end == R else -1.0)
@@ -434,7 +436,7 @@ class Way(Seen):
                 blocks = factors.swapaxes(0, 1) @ by.own_cardinal  # (nodes, 5, nodes)
                 blocks[:, end] += ((rates * -0.5 / apart[end])[:, None] @ by.own_change)[:, 0]
                 matrix[row] = np.einsum("jek,eck->jck", blocks, slopes)
-                less = np.zeros(DEGREES)
+                less = np.zeros(PANEL_NODES)
                 if end != B:
                     x, origin = offsets[end], float(begin[end])
                     near = 1e-4 * np.abs(x[:, None] - (self._breaks - origin)).min(axis=1)
@@ -449,11 +451,11 @@ class Way(Seen):
                     residual[row, near] = offsets[B, near] - follows * due[near]
                     matrix[row, near] = by_length[row, near] = 0.0
                     matrix[row, near, row, near] = 1.0
-            size = count * DEGREES
+            size = count * PANEL_NODES
             system, target = matrix.reshape(size, size), -residual.ravel()
             if event:
                 kind, value = event
-                extra = np.zeros((count, DEGREES))
+                extra = np.zeros((count, PANEL_NODES))
                 signs = _EVENTS[kind] if isinstance(kind, str) else {kind: 1.0}
                 for end, sign in signs.items():
                     extra += sign * slopes[end] * LAST
@@ -463,7 +465,7 @@ class Way(Seen):
             if not np.isfinite(system).all():
                 return None
             solution = np.linalg.solve(system, target)
-            change, damp, longer = solution[:size].reshape(count, DEGREES), 1.0, 0.0
+            change, damp, longer = solution[:size].reshape(count, PANEL_NODES), 1.0, 0.0
             if event:
                 damp = min(1.0, 0.5 * length / abs(float(solution[-1])))
                 longer = damp * float(solution[-1])

@@ -8,8 +8,8 @@ this process took to start.
 A price is told only where it is known: for families that were measured, and if the predicted seconds of nine of ten
 fitted runs of the family leave the price of the process within 1.3 times.
 
-Allowances do without the list (:mod:`partialslip_fem.expense`): a run measures its own meshes and load steps, which no
-list knows.
+Allowances do without the list (:mod:`partialslip_fem.mesh_cost`): a run measures its own meshes and load steps, which
+no list knows.
 """
 
 import importlib.util
@@ -29,7 +29,7 @@ from partialslip.halfplane.method import slip_turns_round
 from partialslip.run import default_methods
 from partialslip.scene import Effects, Fem, Scene
 
-FINEST = 1e-9  # limit: finest accuracy that a budget is spent on
+FINEST_ACCURACY = 1e-9  # limit: finest accuracy that a budget is spent on
 TRUSTED = 1.3  # accuracy: largest factor between price and cost, in nine of ten runs, with which a price is told
 _MIDDLE = 4.0  # fixed: digits at which factors are those of the list
 _FEWEST = 5  # accuracy: measured runs of a family, of a profile or of SuperLU, below which no price is told
@@ -66,7 +66,7 @@ class Price:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredRun:
     """A measured run.
 
     Parameters
@@ -84,7 +84,7 @@ class Measured:
     closing_s: float
 
 
-class Factor(msgspec.Struct, frozen=True):
+class PriceFactor(msgspec.Struct, frozen=True):
     """Logarithm of a factor, and its increase per digit of the accuracy."""
 
     log: float
@@ -95,7 +95,7 @@ class Factor(msgspec.Struct, frozen=True):
         return self.log + self.per_digit * (digits - _MIDDLE)
 
 
-class Family(msgspec.Struct, frozen=True):
+class FamilyPrices(msgspec.Struct, frozen=True):
     """What the list knows of a family of scenes.
 
     Parameters
@@ -107,7 +107,7 @@ class Family(msgspec.Struct, frozen=True):
         Digits of the fitted runs, from and to.
     """
 
-    factor: Factor
+    factor: PriceFactor
     spread: float
     range: tuple[float, float]
 
@@ -133,9 +133,9 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     curve: tuple[float, float, float]
-    families: dict[str, Family]
-    profiles: dict[str, Factor]
-    superlu: Factor | None
+    families: dict[str, FamilyPrices]
+    profiles: dict[str, PriceFactor]
+    superlu: PriceFactor | None
     start: float
     closing: float
     power: float
@@ -164,8 +164,8 @@ class Prices(msgspec.Struct, frozen=True, kw_only=True):
     def _work(self, scene: Scene) -> tuple[float, float] | None:
         """CPU seconds of the methods, and the factor up to which they are known; None if they are not known."""
         digits = math.log10(1 / scene.fem.accuracy)
-        known, profile = self.families.get(family(scene)), self.profiles.get(_profile(scene))
-        superlu = self.superlu if _superlu(scene) else Factor(0.0, 0.0)
+        known, profile = self.families.get(price_family(scene)), self.profiles.get(_profile(scene))
+        superlu = self.superlu if _superlu(scene) else PriceFactor(0.0, 0.0)
         if not known or not profile or not superlu or not known.range[0] <= digits <= known.range[1]:
             return None
         curve = sum(c * digits**power for power, c in enumerate(self.curve))
@@ -178,7 +178,7 @@ def load_prices() -> Prices:
     return msgspec.json.decode(text, type=Prices)
 
 
-def family(scene: Scene) -> str:
+def price_family(scene: Scene) -> str:
     """Return what sets the cost of ``scene`` beside profile, accuracy and factorisation: its bodies, its loads and
     settings that few use; "reversed" for two equal half-planes under fully reversed loads."""
     load, fem = scene.load, scene.fem
@@ -205,7 +205,7 @@ def family(scene: Scene) -> str:
     return ", ".join(names) or "reversed"
 
 
-def fit(runs: Iterable[Measured], machine: str) -> Prices:
+def fit(runs: Iterable[MeasuredRun], machine: str) -> Prices:
     """Fit the price list to measured ``runs``, measured on ``machine``.
 
     Raises
@@ -217,7 +217,7 @@ def fit(runs: Iterable[Measured], machine: str) -> Prices:
     if len(cases) < 10:
         raise InputError(f"a price list needs at least 10 measured runs of adapted finite elements, not {len(cases)}")
     digits = np.array([math.log10(1 / run.scene.fem.accuracy) for run in cases])
-    traits = [[family(run.scene), _profile(run.scene), *["superlu"] * _superlu(run.scene)] for run in cases]
+    traits = [[price_family(run.scene), _profile(run.scene), *["superlu"] * _superlu(run.scene)] for run in cases]
     names = sorted({trait for each in traits for trait in each} - {"reversed", "hertz"})
     has = np.array([[name in each for name in names] for each in traits], dtype=float)
     starts = np.array([run.start_s for run in cases])
@@ -240,11 +240,11 @@ def fit(runs: Iterable[Measured], machine: str) -> Prices:
     logs, growths = fitted[4 : 4 + count].tolist(), fitted[4 + count :].tolist()
     enough = has.sum(axis=0) >= _FEWEST
     factors = {
-        name: Factor(log, growth)
+        name: PriceFactor(log, growth)
         for name, log, growth, known in zip(names, logs, growths, enough, strict=True)
         if known
     }
-    factors |= {"reversed": Factor(0.0, 0.0), "hertz": Factor(0.0, 0.0)}
+    factors |= {"reversed": PriceFactor(0.0, 0.0), "hertz": PriceFactor(0.0, 0.0)}
     # studentised: few runs are fitted better than others are predicted
     rows = np.vstack([columns, pull])
     leverage = np.einsum("ij,ji->i", columns, np.linalg.pinv(rows)[:, : len(cases)])
@@ -254,7 +254,7 @@ def fit(runs: Iterable[Measured], machine: str) -> Prices:
         if own.sum() < _FEWEST:
             continue
         spread = float(np.exp(np.quantile(errors[own], 0.9)))
-        families[name] = Family(factors[name], spread, (float(digits[own].min()), float(digits[own].max())))
+        families[name] = FamilyPrices(factors[name], spread, (float(digits[own].min()), float(digits[own].max())))
     power = float(fitted[3])
     return Prices(
         curve=tuple(fitted[:3].tolist()),

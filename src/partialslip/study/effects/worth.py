@@ -16,10 +16,10 @@ from partialslip.output.files import csv_text
 from partialslip.plan import Effect, Plan, plan, reduced
 from partialslip.report.page import Section
 from partialslip.result import Regime, Result
-from partialslip.result.record import Number, record_of
+from partialslip.result.record import JsonNumber, record_of
 from partialslip.scene import Scene
 
-SCHEMA = "partialslip/effects/1"
+EFFECTS_SCHEMA = "partialslip/effects/1"
 SIZE = 0.02  # accuracy: default element size, in contact half-widths
 CHANGES = ("a", "m", "n", "q", "q2")
 COSTS = {
@@ -64,7 +64,7 @@ class SwitchedEffect:
     @property
     def worth(self) -> float | None:
         """The largest change of a, m, n and q."""
-        known = [change for key in ("a", "m", "n", "q") if (change := self.changes.get(key)) is not None]
+        known = [change_text for key in ("a", "m", "n", "q") if (change_text := self.changes.get(key)) is not None]
         return max(known, default=None)
 
 
@@ -91,13 +91,13 @@ class EffectStudy:
 class ResultSummary(msgspec.Struct, frozen=True):
     """Summary of a :class:`partialslip.Result`, with the result's names and units."""
 
-    a: Number
-    p0: Number
+    a: JsonNumber
+    p0: JsonNumber
     regime: Regime
-    m: Number
-    n: Number
+    m: JsonNumber
+    n: JsonNumber
     counts: dict[str, int]
-    certificate: dict[str, Number]
+    certificate: dict[str, JsonNumber]
 
 
 class EffectsRecord(msgspec.Struct, frozen=True):
@@ -198,7 +198,7 @@ def _costs(result: Result) -> dict[str, float | None]:
 def changes_table(study: EffectStudy) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return headings and rows of the changes by each effect of ``study``."""
     rows = [
-        (entry.effect, "called for" if entry.called_for else "left out", *(change(entry, key) for key in CHANGES))
+        (entry.effect, "called for" if entry.called_for else "left out", *(change_text(entry, key) for key in CHANGES))
         for entry in study.entries
     ]
     return ("effect", "by the scene", *CHANGES), rows
@@ -219,7 +219,7 @@ def turned_over(entry: SwitchedEffect) -> str:
     return f"{'without' if entry.called_for else 'with'} {entry.effect}"
 
 
-def change(entry: SwitchedEffect, key: str) -> str:
+def change_text(entry: SwitchedEffect, key: str) -> str:
     """Return the change of ``key`` by the effect of ``entry`` as text; "-" without values to compare."""
     value = entry.changes.get(key)
     return "-" if value is None else "0" if value == 0 else f"{value:.1e}"
@@ -281,4 +281,4 @@ def effects_csv(study: EffectStudy) -> str:
 
 def effects_record(study: EffectStudy) -> EffectsRecord:
     """Make the record of ``study``."""
-    return EffectsRecord(SCHEMA, study.scene, record_of(ResultSummary, study.result), study.entries)
+    return EffectsRecord(EFFECTS_SCHEMA, study.scene, record_of(ResultSummary, study.result), study.entries)

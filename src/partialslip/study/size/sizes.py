@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from partialslip.arrays import Array
 from partialslip.batch.job import Sharing
 from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import Progress, work_through
+from partialslip.batch.sweep import SweepProgress, work_through
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import SIGMA, off_by
 from partialslip.groups import grouped
@@ -31,7 +31,7 @@ def measure(
     axes: Sequence[Axis],
     ledger: Ledger,
     executor: Executor,
-    progress: Progress = lambda *_: None,
+    progress: SweepProgress = lambda *_: None,
     control: bool = True,
 ) -> list[Sized]:
     """Solve ``scene`` over the grid of ``axes``. Cases in ``ledger`` are not solved again.

@@ -30,7 +30,7 @@ _ALGORITHMS = ("Newton",), ("NewtonLineSearch", "-type", "Bisection")
 _LOADS = ("P", "Q", "sigma")
 
 
-class Bodies:
+class TwoBodies:
     """The bodies, their contact, and their loads."""
 
     def __init__(self, told):
@@ -196,7 +196,7 @@ class Bodies:
 
 def main(told):
     """Solve all steps, write the table, and print the unknowns as JSON."""
-    bodies = Bodies(told)
+    bodies = TwoBodies(told)
     gave_up, tractions = bodies.solve()
     if not gave_up:
         (p1, q1), (p, q2) = (tractions[number] for number in told["points"])

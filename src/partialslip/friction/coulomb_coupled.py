@@ -11,12 +11,12 @@ import numpy as np
 from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
 from partialslip.friction.active_set import Solution
-from partialslip.friction.coupled_step import LoadStep, Pair, Pivot, Relative, solve_near
+from partialslip.friction.coupled_step import LoadStep, Pivot, Relative, solve_near
 from partialslip.friction.even_gap import PARABOLA, EvenGap
 from partialslip.friction.history import History, certified, follow, resting, still
 from partialslip.friction.load_path import Path
 from partialslip.friction.pressing import FlatPunch, Pressed, Punches, Stages, disproportion
-from partialslip.friction.warm_start import Trail
+from partialslip.friction.warm_start import Pair, Trail
 from partialslip.friction.zone_ends import CORNER
 
 _STICKS = 1e-9  # accuracy: relative tolerance of the friction bound and of lengths
