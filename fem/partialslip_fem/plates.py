@@ -1,12 +1,16 @@
 """How the plates of two finite bodies move, from the forces between the bodies; scaled."""
 
 import math
+from contextlib import suppress
 
 import numpy as np
 import scipy.linalg as la
 
 from partialslip.arrays import Array, Indices, submatrix
+from partialslip.errors import PartialslipError
 from partialslip.friction.coupled_step import Relative
+from partialslip.friction.load_path import stretched
+from partialslip.friction.path_following import Bounds, Follower
 from partialslip.result.plates import Plates
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import projected
@@ -30,18 +34,51 @@ def plates_of(problem: ScaledProblem, solution: MeshSolution) -> Plates | None:
     gap, lower = projected(solution.lower, problem.gap, problem.breaks), solution.bodies[0]
     opened = [gap - strain * lower.stretch[1] for strain, _ in problem.strains]
     sheared = [solution.on_line(q) for q in history.at_ends]
-    around = history.around
-    moved, Q = around.shifts, around.forces.sum(axis=1)
     x, pin, on = solution.lower.x, problem.pin, np.flatnonzero(last > 0)
     opened = [gap - angle * x for gap, angle in zip(opened, history.angles, strict=True)]
+    at_points = np.array([float(each.x.sum()) for each in history.points[-len(history.path.cycle) :]])
     return Plates(
-        at_points=np.array([float(each.x.sum()) for each in history.points[-len(history.path.cycle) :]]),
+        at_points=at_points,
         displacement=np.array(history.shifts),
         approach=np.array([_approach(C, *each) for each in zip((first, last), sheared, opened, strict=True)]),
         compliance=_stuck_between(C, x, on, (solution.left, solution.right), pin),
-        loop=np.column_stack([np.append(0.0, moved), np.append(Q[-1], Q)]),
+        loop=_loop(problem, solution, C, at_points),
         turn=None if pin is None else np.array(history.angles),
     )
+
+
+def _loop(problem: ScaledProblem, solution: MeshSolution, C: Relative, at_points: Array) -> Array:
+    """Displacement of the plates, from where the last cycle begins, and Q, (k, 2), along this cycle.
+
+    Mirror images under constant pressure are followed event by event; the loads, and Q ``at_points`` (c,), are known.
+    Others are where their load steps end.
+    """
+    history = solution.history
+    assert history
+    assert C.xx is not None
+    if C.xy is None and problem.pin is None and not history.path.presses_anew:
+        with suppress(PartialslipError):  # so near to sliding, or so fine, that rounding decides which nodes stick
+            return _followed(problem, solution, C.xx, at_points)
+    moved, Q = history.around.shifts, history.around.forces.sum(axis=1)
+    return np.column_stack([np.append(0.0, moved), np.append(Q[-1], Q)])
+
+
+def _followed(problem: ScaledProblem, solution: MeshSolution, C: Array, at_points: Array) -> Array:
+    """Loop of mirror images, event by event; see :func:`_loop`."""
+    line, nodes, history = solution.lower, solution.nodes, solution.history
+    assert history
+    bound, follower = history.bound, Follower(submatrix(C, nodes, nodes))
+    stretch = np.array([solution.bodies[0].stretch[0], stretched(line.x, problem.origin)[1]])[:, nodes]
+    cycle = history.path.cycle
+    forces, moved, Q = history.points[-1 - len(cycle)].x, 0.0, at_points[-1]
+    loop = [np.array([[moved, Q]])]
+    for before, load, at_end in zip((cycle[-1], *cycle), cycle, at_points, strict=False):
+        change = np.subtract(load[1:3], before[1:3]) @ stretch
+        leg = follower.leg(Bounds.constant(bound), np.clip(forces, -bound, bound), change, at_end - Q)
+        share, shift = leg.moves.T
+        loop.append(np.column_stack([moved + shift, Q + share * (at_end - Q)])[1:])
+        forces, moved, Q = leg.forces, moved + leg.shift, at_end
+    return np.concatenate(loop)
 
 
 def compliance_error(

@@ -200,7 +200,7 @@ def _decide(scene: Scene, subsurface: bool, start: bool) -> _Decisions:
                      + (", and one is factored for both" if scene.fem.lower_size == 1 else "")),
         "finite-size": (scene.finite, "a body has a size of its own", "the bodies stand for half-planes"),
         "far-field": (scene.fem.far_field == "half-plane" and None in (scene.bodies.upper, scene.bodies.lower),
-                      "a block is held by the displacements of the half-plane it stands for",
+                      "a block is held by the displacements of the half-plane it stands for (by fem)",
                       "blocks are held as they are: no half-plane around them"),
         "subsurface": (subsurface, _FIELDS,
                        "fields inside the bodies were not asked for"),

@@ -4,6 +4,7 @@ A file is sealed (:mod:`partialslip.seal`), and its outcomes are concluded anew 
 """
 
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -151,6 +152,20 @@ class Record(msgspec.Struct, frozen=True):
     def __repr__(self) -> str:
         said = {True: ", edited since it was written", False: "", None: ", without a checksum"}[self.edited]
         return f"Record of {self.scene.name}{said}: {self.outcome}; {', '.join(self.methods)}"
+
+    def __getitem__(self, method: str) -> ResultRecord:
+        """Return the record of the result of ``method``, as a run does."""
+        try:
+            return self.methods[method]
+        except KeyError:
+            raise KeyError(f"method {method!r}: the record has {', '.join(self.methods)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the methods."""
+        return iter(self.methods)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.methods)
 
     @property
     def json(self) -> str:

@@ -254,7 +254,7 @@ def run(
             raise InputError(f"start = {start!r:.60}: must be a State; partialslip.load_state reads one from a file")
         start.check(scene)
         if scene.load.displacement is not None:
-            given = scene.load.shown("displacement")
+            given = scene.load.shown("displacement", scene.units)
             raise InputError(f"load.displacement = {given}: must be left out with a start, whose plates are not known")
     effects = plan(scene, subsurface=subsurface, start=start is not None)
     chosen = chosen_methods(scene, methods)

@@ -224,8 +224,11 @@ def test_bad_setting(rejected, setting, expected):
         ([*SHIPPED, "--out", "bench.toml/inside"], "--out bench.toml/inside: cannot be written"),
         ([*SHIPPED, "--out", "nul\0"], r"--out nul\x00: cannot be written"),
         ([*SHIPPED, "--out", ""], "must name a folder"),
-        ([*SHIPPED, "--acc", "1e-3"], "unrecognized arguments: --acc"),
-        ([*SHIPPED, "--bo\ngus"], r"unrecognized arguments: --bo\ngus"),
+        ([*SHIPPED, "--out", "/proc/x/y"], "--out /proc/x/y: cannot be written: No such file"),
+        ([*SHIPPED, "--acc", "1e-3"], "--acc: did you mean --accuracy? (see partialslip run --help)"),
+        (["study", "cost", "hertz-shear", "--repeat=3"], "--repeats? (see partialslip study cost --help)"),
+        ([*SHIPPED, "--bo\ngus"], r"unknown argument --bo\ngus (see partialslip run --help)"),
+        (["score", "hertz-shear", "t.csv", "--bar", "-1e-3"], "--bar -1e-3: must be one number, or three"),
     ],
 )
 def test_bad_arguments(rejected, arguments, expected):

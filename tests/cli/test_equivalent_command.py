@@ -101,6 +101,20 @@ def test_settings_change_the_scene(call):
     assert "written: rig.json, half-planes.toml in other" in out
 
 
+def test_units_are_those_of_the_scene(call, folder):
+    metres = ("72.8e9", "50e-3", "4e8", "2.3e5", "2.4e8", "16e-3", "8e-3")
+    text = TEXT
+    for old, new in zip(metres, ("72.8e3", "50", "400", "230", "240", "16", "8"), strict=True):
+        text = text.replace(old, new)
+    (folder / "mm.toml").write_text('units = "N-mm"' + text.replace('"blocks"', '"mm"'))
+    code, out, _ = call("equivalent", "mm.toml")
+    assert code == 0
+    assert re.search(r"1 N/mm of P +3\.84\d*e-07 1/mm +0 rad +0 MPa +0 MPa/mm", out)
+    code, out, err = call("equivalent", "mm.toml", "--set", "load.displacement=[0,3e-3]", "--set", "load.Q=[0,0]")
+    assert (code, out) == (2, "")
+    assert err.startswith("partialslip: mm.toml: load.displacement = [0, 0.003] mm: must be load.Q here")
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

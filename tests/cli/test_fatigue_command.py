@@ -1,6 +1,7 @@
 """partialslip fatigue: what it prints and writes, and what it refuses."""
 
 import csv
+import importlib
 import json
 import os
 import re
@@ -79,8 +80,12 @@ def test_the_same_request_writes_to_the_same_folder(here, capsys):
         (["--distance", "far"], "fretting-aluminium: fatigue.distance = 'far': must be a number, not a string"),
         (["--method", "fem", "--set", "fatigue.k_finley=1"],
          "fretting-aluminium: fatigue.k_finley: unknown key; did you mean 'k_findley'?"),
+        (["--with", "march", "--set", "material.upper={E=1e9, nu=0.3}"],
+         "fretting-aluminium: --with march: must be fem for unlike materials; march finds no stresses in them"),
     ],
 )  # fmt: skip
-def test_bad_input_gets_one_line(here, refused, arguments, line):
+def test_bad_input_gets_one_line(here, refused, arguments, line, monkeypatch):
+    run = importlib.import_module("partialslip.run")
+    monkeypatch.setattr(run, "solved_with_stresses", None)  # before anything is solved
     assert refused("fatigue", "fretting-aluminium", *arguments) == f"partialslip: {line}\n"
     assert not list(here.iterdir())

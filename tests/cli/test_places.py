@@ -291,6 +291,42 @@ def test_the_usual_folder_is_that_of_the_scene_alone(command, name):
     assert folders() == sorted([other, name])
 
 
+MILLIMETRES = """
+units = "N-mm"
+name = "mm"
+material = { E = 72100, nu = 0.33 }
+profile = { kind = "hertz", R = 10 }
+load = { P = 200, Q = [-30, 30] }
+friction = { f = 0.3 }
+"""
+
+
+@pytest.mark.usefixtures("coarse")
+def test_units_are_a_setting_unless_they_are_the_scenes_own(capsys):
+    """Files are written in them, and tables read in them."""
+    Path("mm.toml").write_text(MILLIMETRES, "utf-8")
+    rows = [f"{x},{5e2 * (1 - x**2 / 0.063) ** 0.5 if x**2 < 0.063 else 0},{x**2}" for x in np.linspace(-0.3, 0.3, 41)]
+    Path("t.csv").write_text("\n".join(["x,p,dq", *rows]), "utf-8")
+    for command in (["run", "mm.toml", "--with", "exact"], ["score", "mm.toml", "t.csv"], ["map", "mm.toml"]):
+        before = {*folders()} if Path("results").exists() else set()
+        assert main(command) == 0
+        capsys.readouterr()
+        assert main([*command, "--set", "shown_in=SI"]) == 0
+        assert "(settings: shown_in" in capsys.readouterr().out.splitlines()[-1]
+        assert main([*command, "--set", "shown_in=N-mm"]) == 0
+        assert len({*folders()} - before) == 2
+
+
+@pytest.mark.usefixtures("coarse")
+def test_what_a_folder_holds_is_told_in_the_units_of_the_scene(refused, capsys):
+    for P in (200, 190):
+        Path("mm.toml").write_text(MILLIMETRES.replace("200", str(P)), "utf-8")
+        assert main(["map", "mm.toml"]) == 0
+    capsys.readouterr()
+    said = refused("map", "mm.toml", "--set", "load.Q=[-20,20]", "--out", "results/mm-map")
+    assert "holds map mm with other settings: load.P = 200 N/mm, load.Q = [-30, 30] N/mm: name another" in said
+
+
 @pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 def test_an_edited_scene_file(capsys):

@@ -295,7 +295,7 @@ def test_command(to, tmp_path, monkeypatch, capsys):
         (["load.e=[-1e-4, 1e-4]"], "load.e: must be left out to export to {}"),
         (["load.displacement=[-1e-6, 1e-6]", "load.Q=[0, 0]",
           *(f"bodies.{name}={{width=0.016, height=0.008}}" for name in ("lower", "upper"))],
-         "load.displacement = [-1e-06, 1e-06]: must be load.Q here"),
+         "load.displacement = [-1e-06, 1e-06] m: must be load.Q here"),
         (["friction={x=[-1e-3, 1e-3], f=[0.4, 0.6]}"], "friction.f = 0.4 to 0.6: must be one number to export"),
         (["load.sigma_slope=[0, 1e9]"], "load.sigma_slope = [0.0, 1000000000.0]: must be 0 or left out to export"),
         (["bodies.lower={kind='pad', width=0.02, height=0.01, holder={width=0.03, height=0.01}}"],

@@ -188,6 +188,14 @@ def test_labels_keep_apart(hertz):
     assert apart[~np.eye(len(places), dtype=bool)].min() > 12  # points; the text is 8 high
 
 
+def test_a_label_does_not_stand_beside_one_that_says_the_same(hertz):
+    svg = (hertz / "map.svg").read_text("utf-8")
+    found = re.findall(r"translate\(([\d.]+) ([\d.]+)\)[^>]*>([mn] [^<]+)<", svg)
+    for number, (x, y, text) in enumerate(found):
+        apart = [np.hypot(float(x) - float(u), float(y) - float(v)) for u, v, other in found[:number] if other == text]
+        assert min(apart, default=np.inf) > 30  # points
+
+
 @pytest.mark.slow
 def test_same_map_same_files(hertz, tmp_path):
     assert main(["map", "--out", str(tmp_path)]) == 0
@@ -302,6 +310,13 @@ def test_bad_input_is_refused_in_one_line(tmp_path, monkeypatch, refused, text, 
     before = sorted(tmp_path.rglob("*"))
     assert expected in refused("map", "bench.toml", *arguments)
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_map_says_what_it_can_draw(refused):
+    """And not what other commands can."""
+    assert "must be of one material for a map\n" in refused(
+        "map", "hertz-shear", "--set", "material={upper={E=2e11,nu=0.3},lower={E=7e10,nu=0.3}}"
+    )
 
 
 def test_settings_of_no_scene_are_refused(refused):

@@ -110,8 +110,8 @@ def test_signs_and_the_order_of_load_points(data, monkeypatch):
 def test_words_where_there_is_no_closed_form():
     part = varying_map(scene(dsigma=0.8))
     assert place(part) == [
-        "hertz-small-tension: the left end of the contact slips at most during part of the cycle: there is no closed "
-        "form; must be solved by march"
+        "hertz-small-tension: the left end of the contact slips at most during part of the cycle: no exact solution "
+        "is known; must be solved by march"
     ]
     still = varying_map(scene(dQ=0.2, dsigma=0.0))
     assert place(still)[0].startswith("hertz-small-tension: no slip, m = 0.8")
@@ -158,9 +158,9 @@ def test_files(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"load": {"e": 1e-5}}, "load.e = 1e-05: must be 0 or left out for a map over dP and dQ"),
+        ({"load": {"e": 1e-5}}, "load.e = 1e-05 m: must be 0 or left out for a map over dP and dQ"),
         ({"load": {"P": P}}, "load.P: must vary for a map over dP and dQ"),
-        ({"load": {"Q": [0.0, 0.0]}}, "load.Q = [0.0, 0.0]: must vary for a map over dP and dQ"),
+        ({"load": {"Q": [0.0, 0.0]}}, "load.Q = [0, 0] N/m: must vary for a map over dP and dQ"),
         (
             {"load": {"P": [P, P, 0.8 * P], "Q": [-1e5, 0.0, 1e5], "sigma": [0.0, 0.0]}},
             "load.Q, load.sigma, load.P: must be in phase for a map over dP and dQ",

@@ -263,6 +263,19 @@ def test_a_path_may_be_continued(sheared):
         partialslip.run(other, "march", start=sheared.state)
 
 
+@pytest.mark.slow
+def test_nodes_that_open_on_the_way_do_not_ratchet():
+    """If tractions repeat, every node that stays in contact slips by the same over a cycle, so that a place which never
+    slips forbids it. What a node moves while it is open is no slip: here the contact wanders in the middle of a leg."""
+    gripped = {"P": 200e3, "Q": (10e3, 70e3), "sigma": (50e6, 350e6), "steps": 8}
+    steel, titanium = {"E": 205e9, "nu": 0.3}, {"E": 116e9, "nu": 0.32}
+    scene = partialslip.parse_scene({
+        "name": "pad", "material": {"upper": steel, "lower": titanium}, "profile": {"kind": "hertz", "R": 0.025},
+        "friction": {"f": 0.6}, "load": gripped, "fem": {"accuracy": 1e-2},
+    })  # fmt: skip
+    assert partialslip.run(scene, "march")["march"].regime == "large tension"
+
+
 STIFF = partialslip.parse_scene(
     {
         "name": "stiff-on-aluminium",

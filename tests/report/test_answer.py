@@ -160,6 +160,13 @@ def test_why_there_are_no_bars(changes, text):
     assert found.outcome is Outcome.NOT_JUDGED
 
 
+def test_errors_within_their_bars_with_larger_estimates():
+    """The bars are met, and the last line says so; an estimate that is larger is told, not judged."""
+    fem = result(estimate={"a": 2e-4, "m": 1e-4, "q1": 18e-3})
+    (line,) = rows.verdict_lines(ran({"exact": EXACT, "fem": fem}))
+    assert line == "all bars met: within 0.1 % of a, 1 % of p, 1.5 % of q; estimate of q1 above its bar"
+
+
 def test_one_method_has_nothing_to_compare_with():
     found = ran({"fem": result()})
     assert (rows.verdict(found), found.conclusion.code) == ("no bars: nothing to compare with", 0)

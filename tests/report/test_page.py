@@ -15,7 +15,7 @@ import partialslip
 from partialslip.cli import main
 from partialslip.errors import MissingLibraryError
 from partialslip.origin import made_now, origin_lines
-from partialslip.output.svg import with_dark_mode
+from partialslip.output.svg import svg, with_dark_mode
 from partialslip.plan import plan
 from partialslip.report import files
 from partialslip.report.answer import amounts
@@ -152,6 +152,13 @@ def test_a_study_has_the_same_frame():
         assert part in page
 
 
+def test_a_narrow_figure_of_a_study_stays_narrow():
+    """Stretched over a page, its text would be twice as large."""
+    for width, kind in ((300, "<figure class=narrow>"), (600, "<figure>")):
+        figure = svg(lambda figure: figure.subplots(), (width / 72, 2.0))
+        assert kind in study_page("study of it", SCENE, MADE, [Section("Errors", [], figure)]).partition("<h2>Scene")[0]
+
+
 def test_a_study_of_cost_writes_its_page(tmp_path, monkeypatch):
     def point(series, error, cpu_s, **counts):
         errors = dict.fromkeys("amnpq", error)
@@ -161,7 +168,7 @@ def test_a_study_of_cost_writes_its_page(tmp_path, monkeypatch):
 
     found = [point("exact", 1e-15, 0.1)]
     found += [point("P4, adapted", 10.0**-k, float(k), dofs=1000 * k) for k in (2, 3, 4)]
-    monkeypatch.setattr(ladder, "measure_costs", lambda *_: ladder.MeasuredCosts(found, 2))
+    monkeypatch.setattr(ladder, "measure_costs", lambda *_: ladder.MeasuredCosts(found, [], 0.0, 0.0))
     assert main(["study", "cost", "hertz-shear", "--set", "friction.f=0.4", "--out", str(tmp_path)]) == 0
     page = (tmp_path / "report.html").read_text("utf-8")
     assert page.count("<svg") == 3  # costs, phases, sketch
@@ -186,6 +193,16 @@ def test_a_sketch_names_bodies_and_loads():
     texts = words(sketch_svg(partialslip.load_scene("hertz-shear", ["load.sigma=[0,0]"])))
     assert texts.count("half-plane") == 2
     assert not any("σ" in text for text in texts)
+
+
+def test_a_sketch_has_the_numbers_of_the_table():
+    """116000 MPa, not 1.16e+05 MPa."""
+    scene = partialslip.load_scene("hertz-shear", ["material={E=116e9, nu=0.32}", "shown_in='N-mm'"])
+    assert "both: E = 116000 MPa, ν = 0.32" in words(sketch_svg(scene))
+
+
+def test_the_page_tells_which_way_q_pushes(page):
+    assert "Positive Q pushes the upper body towards -x" in page
 
 
 def arrows_and_rollers(settings):

@@ -78,7 +78,9 @@ def test_rows_without_values_are_left_out_and_counted(tmp_path):
     path.write_text("x,p,dq\n" + "\n".join(rows), "utf-8")
     found = read_tractions(path, SCENE)
     assert len(found.x) == len(X)
-    assert found.notes == ("3 rows without values were left out",)
+    assert found.notes == ("left out: 3 rows without values",)
+    path.write_text("x,p,dq\n" + "\n".join(rows[:6] + rows[8:]), "utf-8")
+    assert read_tractions(path, SCENE).notes == ("left out: 1 row without values",)
 
 
 def test_centre_auto_puts_x_in_the_middle(tmp_path, capsys):

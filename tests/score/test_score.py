@@ -245,6 +245,16 @@ def test_a_moment_moves_the_contact(tmp_path):
         score(scene, tmp_path / "t.csv", centre="auto")
 
 
+def test_shear_that_is_not_scored_needs_no_other_reference(tmp_path):
+    """Only of a table with q1 and q2 it matters that exact does not know them."""
+    scene = load_scene("hertz-small-tension", ["load.sigma=[0,4e7]"])
+    table = sampled(run(scene, ["exact"])["exact"], 81)
+    for names, columns, told in (("x,p,dq", table, 0), ("x,p,q1,q2", table[:, [0, 1, 2, 2]] * [1, 1, -0.5, 0.5], 1)):
+        found = score(scene, written(tmp_path / "t.csv", columns, names))["exact"]
+        said = [*found.undetermined.values(), *found.notes]
+        assert sum("use march" in text for text in said) == 3 * told
+
+
 def test_other_references(tmp_path):
     """March where loads are out of phase; the finite elements where bodies are of a size."""
     loads = "load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]", "load.cycles=2"

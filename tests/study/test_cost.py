@@ -3,21 +3,24 @@
 import importlib
 import json
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import made
 import numpy as np
 import pytest
+from outline import texts
 
 import partialslip
 from partialslip.batch.job import Job, ProcessCost, solve_apart
 from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
 from partialslip.cli import run as command
-from partialslip.cli.cost import _progress
+from partialslip.cli.cost import _left_out, _progress
 from partialslip.study.cost import ladder as cost
 from partialslip.study.cost import prices
 from partialslip.study.cost.figure import phases_svg
+from partialslip.study.cost.spending import Spending
 
 SCENE = partialslip.load_scene("hertz-large-tension")
 
@@ -64,66 +67,97 @@ def study(monkeypatch):
             process = ProcessCost(spent, 0.0, 100.0, spent)
             return made.solved(case.scene, case.labels, errors, process, exact=found, fem=found)
 
-        jobs = [Job(SCENE, ("exact", "fem"), {"series": series, "setting": setting}) for series, setting in settings]
         monkeypatch.setattr(cost, "solve_apart", apart)
-        monkeypatch.setattr(cost, "ladder", lambda *_: jobs)
+        monkeypatch.setattr(cost, "ladder", lambda *_: [job(*setting) for setting in settings])
         return solved
 
     return call
 
 
+def job(series, digits):
+    """A setting of an accuracy, or of an element size of a series with uniform meshes."""
+    fem = {"size" if "uniform" in series else "accuracy": 10.0**-digits}
+    return Job(SCENE.replace(fem=fem), ("exact", "fem"), {"series": series, "setting": digits})
+
+
 def test_what_was_measured_is_not_measured_again(tmp_path, study):
     """Medians are taken over the repeats of a setting."""
-    solved = study([("P4", "1")], len)
+    solved = study([("P4", 1)], len)
     cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 1)
-    (found,), left = cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
-    assert left == 0
+    (found,), left, *_ = cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
+    assert left == []
     assert len(solved) == 3
     assert found.cpu_s == 2.0
 
 
 def test_a_study_of_cost_says_what_runs_and_how_long_it_takes(tmp_path, study):
     """The time left follows from an earlier repeat of the same setting, else from the mean."""
-    walls = {"accuracy 0.01": 1.0, "accuracy 1e-05": 9.0}
+    walls = {2: 1.0, 5: 9.0}
     study([("P4, adapted", setting) for setting in walls], lambda solved: walls[solved[-1]])
     told = []
     cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 2, lambda *state: told.append(_progress(*state)))
     assert told == [
-        "run 1 of at most 4: P4, adapted, accuracy 0.01",
-        "run 2 of at most 4: P4, adapted, accuracy 1e-05, 3 s left",
-        "run 3 of at most 4: P4, adapted, accuracy 0.01, 10 s left",
-        "run 4 of at most 4: P4, adapted, accuracy 1e-05, 9 s left",
+        "run 1 of at most 4: P4, adapted, 2",
+        "run 2 of at most 4: P4, adapted, 5, 3 s left",
+        "run 3 of at most 4: P4, adapted, 2, 10 s left",
+        "run 4 of at most 4: P4, adapted, 5, 9 s left",
         "drawing",
     ]
 
 
-def test_a_budget_leaves_settings_dearer_than_the_rest(tmp_path, study):
-    """Settings cost 1, 2, 4 and 8 s in one series, and nothing in another that comes later. Each repeat solves the same
-    settings; what was solved before counts, too."""
-    settings = [*(("dear", each) for each in ("1", "2", "4", "8")), *(("cheap", each) for each in ("0", "0.0"))]
-    solved = study(settings, lambda solved: solved[-1])
-    told, ledger = [], Ledger(tmp_path / "ledger.jsonl")
+def test_a_budget_leaves_out_what_is_predicted_not_to_fit(tmp_path, study):
+    """Settings cost 1, 4, 16 and 64 s in one series, and 1 s in another. Each repeat solves the same settings;
+    what was solved before counts, too."""
+    settings = [*(("dear", each) for each in (1, 2, 3, 4)), *(("cheap", each) for each in (1.5, 2.5))]
+    solved = study(settings, lambda solved: 1.0 if solved[-1] % 1 else 4.0 ** (solved[-1] - 1))
+    names, ledger = [], Ledger(tmp_path / "ledger.jsonl")
 
-    def measured(budget):
-        told.clear()
-        progress = lambda *state: told.append(state)  # noqa: E731
-        found, left = cost.measure_costs(SCENE, ledger, 2, progress, budget=budget)
-        assert told[-1][:2] == (2 * len(found), 2 * len(found))
-        return [float(point.setting) for point in found], left
+    def measured(budget, repeats=1):
+        states = []
+        found, left, least, rest = cost.measure_costs(
+            SCENE, ledger, repeats, lambda *state: states.append(state), budget=budget
+        )
+        names[:] = [(point.series, float(point.setting)) for point in found]
+        assert states[-1][:2] == (repeats * len(found), repeats * len(found))
+        assert not left or least > rest
+        return {(str(case.labels["series"]), case.labels["setting"]) for case in left}
 
-    assert measured(2.5) == ([1, 2], 4)
-    assert solved == ["1", "2"] * 2
-    assert measured(2.5) == ([1, 2], 4)
-    assert len(solved) == 4
-    assert measured(3.5) == ([1, 2, 0, 0], 2)
-    assert measured(5.0) == ([1, 2, 4], 3)
-    assert solved[8:] == ["4", "4"]
+    left = measured(12.0)
+    assert {*names} == {("dear", 1), ("cheap", 1.5), ("dear", 2), ("cheap", 2.5)}
+    assert left == {("dear", 3), ("dear", 4)}
+    count = len(solved)
+    assert measured(12.0) == left
+    assert len(solved) == count  # the ledger knows them
+    assert measured(math.inf) == set()
+    assert measured(12.0, 2) == left
+    assert len(solved) == len(settings) + 4  # the second repeat is of what the first one ran
+
+
+def test_a_budget_goes_from_cheap_to_dear_over_all_series():
+    """What has run predicts what waits: a series that begins with a fine accuracy waits for the coarse ones."""
+    series = {"fine": (6, 7), "coarse": (2, 3, 4), "uniform": (1, 2)}
+    jobs = [job(name, digits) for name, settings in series.items() for digits in settings]
+    spending, ran = Spending(jobs), []
+    while case := spending.following(100.0):
+        ran.append((case.labels["series"], case.labels["setting"]))
+        spending.ran(case, 3.0 ** case.labels["setting"], 0.5)
+    assert ran == [("uniform", 1), ("coarse", 2), ("uniform", 2), ("coarse", 3), ("coarse", 4)]
+    assert {each.labels["series"] for each in spending.waiting} == {"fine"}
+    assert spending.least == pytest.approx(3.0**6 + 0.5)  # as coarse has grown
+
+
+def test_what_is_left_out_is_said_in_one_line():
+    left = [job("P4, adapted", 6), job("P4, adapted", 7), job("P1, uniform", 3)]
+    line = _left_out(cost.MeasuredCosts([], left, 53.21, 20.0), "60s")
+    assert line == (
+        "3 settings are left out: the cheapest of them is predicted to take 53.2 CPU s, and 20 s are left of --budget "
+        "60s: P4, adapted, 6 on; P1, uniform, 3 on"
+    )
 
 
 def test_a_ladder_is_of_the_methods_asked_for():
     assert {case.methods for case in cost.ladder(SCENE, ("march",))} == {("exact", "march")}
-    first = [case.labels["series"] for case in cost.ladder(SCENE, ("exact", "fem"))][:11]
-    assert len(set(first)) == 11  # the cheapest setting of each series
+    assert {case.labels["series"] for case in cost.ladder(SCENE, ("exact",))} == {"exact"}
 
 
 def test_every_setting_says_what_it_is():
@@ -142,8 +176,19 @@ def test_exponents_of_power_laws_are_found():
     assert cost.slopes(points)["P4"] == pytest.approx({"m, n": -2, "q": -2, "CPU": 1.5})
 
 
-def test_phases_of_the_exact_method_alone_are_drawn_without_a_warning():
-    assert "<svg" in phases_svg([point("exact", 1.0, 0.0)], "none")
+def test_meshes_alike_tell_no_exponent():
+    assert math.isnan(cost.slopes([point("P4", 1.0, 1e-3, 1000), point("P4", 1.1, 1e-5, 1010)])["P4"]["CPU"])
+
+
+def test_panels_of_phases_without_data_are_left_out():
+    """One setting of each series has bars, but no growth; the exact method alone has neither. The legends stand beside
+    their panels."""
+    alone = phases_svg([point("P4, adapted", 1.0, 1e-3)], "one")
+    assert "unknowns of the last mesh (P4, adapted)" in texts(alone)
+    assert "CPU s of the method" not in texts(alone)
+    both = phases_svg([point("P4, adapted", 1.0, 1e-3), point("P4, adapted", 4.0, 1e-5, 4000)], "two")
+    assert {"CPU s of the process", "CPU s of the method", "P4, adapted: 1.00"} <= {*texts(both)}
+    assert phases_svg([replace(point("exact", 1.0, 0.0), counts={})], "none") == ""
 
 
 def test_a_peer_is_met_at_its_best_error_and_in_its_time():

@@ -19,7 +19,6 @@ import pytest
 from outline import texts as texts_of
 from size_entries import entries, scene, sized
 
-import partialslip
 from partialslip.batch.job import Job, solve_job
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import Task, work_through, workers
@@ -28,63 +27,17 @@ from partialslip.study.size import sizes as size
 from partialslip.study.size import tables
 from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
-from partialslip.study.size.case import COMPARED_METHODS, Sized, solve_sized
+from partialslip.study.size.case import Sized, compared_methods, solve_sized
 from partialslip.study.size.figure import grid_svg, size_svg
 from partialslip.study.size.law import Kind, PointStatus, Sizes, trend
 
 
-@pytest.mark.parametrize(
-    ("text", "values", "in_a"),
-    [
-        ("load.P=1e5,2e5", (1e5, 2e5), False),
-        ("bodies.*.width=4a..64a:5", (4.0, 8.0, 16.0, 32.0, 64.0), True),
-        ("fem.order=2,3", (2.0, 3.0), False),
-    ],
-)
-def test_axes_are_read(text, values, in_a):
-    axis = read(text)
-    assert axis.values == pytest.approx(values, rel=1e-11)
-    assert axis.in_a is in_a
-
-
-def test_values_are_in_the_units_in_which_the_scene_is_shown():
-    plain = scene()
-    shown = msgspec.structs.replace(plain, shown_in="N-mm")
-    for one, other in (("bodies.*.width=1..4:3", "bodies.*.width=1e3..4e3:3"), ("bodies.*.height=4a,8a",) * 2):
-        jobs = zip(make(plain, [read(one)]), make(shown, [read(other)]), strict=True)
-        for job, same in jobs:
-            for (_, body), (_, again) in zip(job.scene.bodies, same.scene.bodies, strict=True):
-                assert (again.width, again.height) == pytest.approx((body.width, body.height), rel=1e-15)
-            assert (same.scene.shown_in, same.scene.load) == ("N-mm", job.scene.load)
-
-
-@pytest.mark.parametrize(
-    "text",
-    ["", "load.P", "load.P=", "=1,2", "load.P=1..", "load.P=2..1", "load.P=0..1", "load.P=1..2..3", "load.P=1a,2",
-     "load.P=one", "load.P=1..2:1", "load.P=1..2:x", "load.P=1,2:3", "load.P+=1,2",
-     "0*load.P=1,2", "2*=1,2", "load.P=1..1e999"],
-)  # fmt: skip
-def test_bad_axes_are_refused_in_one_line(text):
-    with pytest.raises(partialslip.InputError, match="--over"):
-        read(text)
-
-
-@pytest.mark.parametrize("values", ["1e5", "1e5,1e5", "0,1e5"])
-def test_a_map_needs_two_values_of_each(values, tmp_path, refused):
-    command = ["study", "size", "hertz-shear", "--over", "friction.f=0.5,0.9", "--over", f"load.P={values}"]
-    said = refused(*command, "--out", str(tmp_path / "map"))
-    assert said == "partialslip: --over load.P: must have at least 2 values, all > 0, for a map\n"
-
-
-def test_stars_stand_for_every_table_and_a_for_the_half_planes_half_width():
-    cases = make(scene(), [read("2*bodies.*.width+bodies.*.height=4a,16a")])
-    assert len(cases) == 2
-    widths = [case.scene.bodies.lower.width for case in cases]
-    assert widths == pytest.approx([8e-3, 32e-3])
-    assert cases[0].scene.bodies.upper.height == pytest.approx(4e-3)
-    assert [case.labels["bodies.*.height"] for case in cases] == [4.0, 16.0]
-    with pytest.raises(partialslip.InputError, match="not in the scene"):
-        make(scene(), [read("bodies.*.depth=1,2")])
+def test_the_error_of_marched_half_planes_is_part_of_that_of_a_difference():
+    labels, none = {"load.P": 4.0, "accuracy": 1.0}, {"p_max": 1.0, "m": None, "n": None}
+    fem = {"a": 1.1, "estimate": {"a": 3e-5}, "counts": {"dofs": 100}, **none}
+    found = sized(labels, fem=fem, march={"a": 1.0, "estimate": {"a": 2e-5}, **none})
+    along = size.along(read("load.P=4,8"), [found])
+    assert (along.off["a"], along.mesh["a"]) == (pytest.approx(0.1), pytest.approx(5e-5))
 
 
 def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
@@ -368,7 +321,7 @@ def test_both_half_planes_have_their_laws():
     assert {row["half-planes"]: round(float(row["k"]), 6) for row in laws if row["k"]} == {
         "half-plane": 2, "equivalent": 4,
     }  # fmt: skip
-    head, rows = size.case_table([axis], found)
+    head, rows = size.case_table([axis], found, scene().units)
     column = head.index("equivalent: a")
     assert [row[column] for row in rows] == ["", "", *(left[at] for at in (8.0, 16.0, 32.0, 64.0))]
     assert [row[head.index("no equivalent")] for row in rows] == ["must be larger", "too large", "", "", "", ""]
@@ -391,7 +344,7 @@ def test_the_error_of_the_rig_is_an_error_of_the_mesh():
 def test_equivalent_half_planes_leave_a_tenth_of_the_difference():
     """Blocks of width 8 a. Without equivalent half-planes the case stands, and says why; half-planes need none."""
     (case,) = make(scene(accuracy=1e-2), [read("bodies.*.width+bodies.*.height=8a")])
-    assert case.methods == COMPARED_METHODS
+    assert case.methods == ("exact", "equivalent", "fem")
     found = solve_sized(case)
     off, left = (size.along(read("bodies.*.width+bodies.*.height=8a"), [found], name).off for name in
                  ("half-plane", "equivalent"))  # fmt: skip
@@ -405,7 +358,8 @@ def test_equivalent_half_planes_leave_a_tenth_of_the_difference():
     assert found.run.comparison["fem"].errors["a"] > 0
     assert found.equivalent is None
     assert "must be larger compared with the contact" in found.refused
-    half_planes = solve_sized(Job(scene().replace(bodies={"upper": None, "lower": None}), COMPARED_METHODS))
+    plain = scene().replace(bodies={"upper": None, "lower": None})
+    half_planes = solve_sized(Job(plain, compared_methods(plain)))
     assert (half_planes.error, half_planes.refused, half_planes.equivalent) == ("", "", None)
 
 

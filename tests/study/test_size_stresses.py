@@ -143,3 +143,18 @@ def test_criteria_are_those_that_the_scene_or_the_user_asks_for():
 def test_criteria_that_a_study_cannot_show_are_refused(changes, names, told):
     with pytest.raises(InputError, match=told):
         criteria_of(scene().replace(changes), names)
+
+
+@pytest.mark.slow
+def test_unlike_bodies_have_stresses_of_finite_elements_alone():
+    """March finds their half-planes, but no stresses in them, and a line says so."""
+    unlike = {"lower": {"E": 70e9, "nu": 0.3}, "upper": {"E": 2e11, "nu": 0.3}}
+    asking = scene(accuracy=1e-2).replace({"material": unlike, "fatigue.distance": 1e-4})
+    axis = read("bodies.*.width+bodies.*.height=8a")
+    (case,) = make(asking, [axis])
+    found = solve_sized(case)
+    assert found.error == ""
+    assert {name for name, spots in found.stresses.items() if spots} == {"fem"}
+    study = tables.size_study(asking, axis, [found])
+    assert 0 < study.models[0].off["a"][0] < 0.1
+    assert stresses.in_short(study)[0].startswith("stresses of the half-plane are not known: no method finds them")

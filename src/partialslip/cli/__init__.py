@@ -1,7 +1,9 @@
 """The command line. Exit codes: see :mod:`partialslip.cli.ending`."""
 
 import argparse
+import difflib
 import functools
+import re
 import shlex
 import sys
 from collections.abc import Sequence
@@ -16,11 +18,15 @@ if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
 
+_ALIKE = 0.65  # display: least similarity of an option that is suggested: that of --acc and --accuracy
+
+
 class _Parser(argparse.ArgumentParser):
     """Parser with one-line errors, without abbreviations, and with examples and exit codes at the end of the help."""
 
     def __init__(self, examples: Sequence[str] = (), failure: str = "", unjudged: str = "", **settings: Any) -> None:
         super().__init__(allow_abbrev=False, **settings)
+        self._negative_number_matcher = re.compile(r"-\.?\d")  # -1e-3 and -1,1,1 are values, too, not options
         codes = [
             "0    success",
             *([f"1    {failure}"] if failure else []),
@@ -43,6 +49,14 @@ class _Parser(argparse.ArgumentParser):
     def _print_message(self, message: str, file: "SupportsWrite[str] | None" = None) -> None:
         """Print help and version with ``print``, so that a failed write raises."""
         print(message, end="", file=file)
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> tuple[Any, list[str]]:
+        """Parse; refuse what is unknown here, where the options of the command are known."""
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            near = difflib.get_close_matches(unknown[0].partition("=")[0], self._option_string_actions, 1, _ALIKE)
+            self.error(f"unknown argument {unknown[0]}" + (f": did you mean {near[0]}?" if near else ""))
+        return found, unknown
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")

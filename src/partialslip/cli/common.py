@@ -2,8 +2,8 @@
 
 import argparse
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -102,6 +102,15 @@ def print_long_path(scene: "Scene", methods: Sequence[str]) -> None:
             soft_wrap=True,
             markup=False,
         )
+
+
+@contextmanager
+def of_scene(scene: str) -> Iterator[None]:
+    """Let messages about bad input in the block begin with the ``scene`` as the user gave it."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{scene}: {error}") from None
 
 
 def check_output(options: argparse.Namespace) -> None:
@@ -211,6 +220,13 @@ def request(
         Whether constants of fatigue criteria change the results.
     """
     from partialslip.output.place import Request
+    from partialslip.scene.dimensions import shown
+    from partialslip.units import SI
+
+    units = scene.units if scene else SI
+
+    def text(key: str, value: object) -> str:
+        return shown(key, value, units)
 
     def data(of: "Scene | None", settings: Mapping[str, object]) -> dict[str, Any]:
         return {"command": command, "scene": _content(of, constants), "settings": _plain(settings)}
@@ -218,24 +234,25 @@ def request(
     given = {key: value for key, value in vars(options).items() if key not in _NEUTRAL}
     asked = data(scene, {**given, **known})
     if options.out is not None:
-        return Request(asked, None)
+        return Request(asked, None, text)
     try:
         own = partialslip.load_scene(options.scene) if scene and options.overrides else scene
     except InputError:  # the file lacks what --set gives
-        return Request(asked, None)
-    return Request(asked, data(own, {**{key: options.default(key) for key in given}, **usual()}))
+        return Request(asked, None, text)
+    return Request(asked, data(own, {**{key: options.default(key) for key in given}, **usual()}), text)
 
 
 def _content(scene: "Scene | None", constants: bool) -> dict[str, Any]:
-    """Return ``scene`` as plain data, without its title; with its ``constants`` of fatigue criteria."""
+    """Return ``scene`` as plain data, without its title; with the units of its files and tables, and its ``constants``
+    of fatigue criteria."""
     if scene is None:
         return {}
     import msgspec
 
     from partialslip.batch.ledger import scene_content
 
-    fatigue = {"fatigue": msgspec.to_builtins(scene.fatigue)} if constants else {}
-    return {key: value for key, value in scene_content(scene).items() if key != "title"} | fatigue
+    more = {"shown_in": scene.shown_in} | ({"fatigue": msgspec.to_builtins(scene.fatigue)} if constants else {})
+    return {key: value for key, value in scene_content(scene).items() if key != "title"} | more
 
 
 def _plain(settings: Mapping[str, object]) -> dict[str, object]:
@@ -273,7 +290,8 @@ def study_ledger(folder: Path) -> "Ledger":
 
     ledger = Ledger(folder / "ledger.jsonl")
     if count := ledger.outdated:
-        messages().print(f"{ledger.path}: {count:,} entries ignored: made by other source files", markup=False)
+        entries = "entries" if count > 1 else "entry"
+        messages().print(f"{ledger.path}: {count:,} {entries} ignored: made by other source files", markup=False)
     return ledger
 
 

@@ -75,7 +75,7 @@ def counting(name: str, closing: str = "") -> Iterator[Callable[[int, int, float
             if not began and not log:
                 running.enter_context(bar)
             if not began and done:
-                console.print(f"{done} cases were finished before", markup=False)
+                console.print(f"{done} case{'s were' if done > 1 else ' was'} finished before", markup=False)
             began = True
             text = closing if done == total else "" if math.isnan(left) else f"{left:.0f} s left"
             if log:

@@ -31,8 +31,8 @@ def add(topics: Commands) -> None:
         "cost",
         help="errors against CPU seconds, over a ladder of settings of every method",
         description="Solve a scene with a ladder of settings of every method, one process per setting, as far as the "
-        "budget lets it: the cheapest setting of each series first. Print errors against CPU seconds. A stopped study "
-        "continues.",
+        "budget lets it, from cheap to dear: what has run predicts what the others take. Print errors against CPU "
+        "seconds. A stopped study continues.",
         examples=[
             "partialslip study cost hertz-large-tension",
             "partialslip study cost hertz-large-tension --with march,fem --budget 300s",
@@ -92,25 +92,29 @@ def _evaluated(
     from partialslip.study.cost import ladder
     from partialslip.study.cost.figure import errors_svg, phases_svg
 
-    found, left = measured
+    found = measured.points
+    phases = phases_svg(found, f"{name}: where the time goes")
     texts = {
         "cost.csv": csv_text(*ladder.cost_table([*found, *peers])),
         "cost.svg": errors_svg(found, peers, f"{name}: error against cost"),
-        "phases.svg": phases_svg(found, f"{name}: where the time goes"),
-    }
+    } | ({"phases.svg": phases} if phases else {})
     front = ladder.front(found)
     best = {id(point) for point in front}
     head = ["series (* on the front)", "setting", "m, in a", "n, in a", "q, norm", "unknowns", "CPU s", "process"]
     rows = [_row(point, id(point) in best) for point in [*found, *peers]]
-    slopes = [[each, *(_number(value, ".2f") for value in of.values())] for each, of in ladder.slopes(found).items()]
+    slopes = [
+        [each, *(_number(value, ".2f") for value in of.values())]
+        for each, of in ladder.slopes(found).items()
+        if not math.isnan(of["CPU"])
+    ]
     exponents = ["exponent against unknowns", "m, n", "q", "CPU"]
     heading = f"{name}: what accuracy costs" + (f", medians of {options.repeats}" if options.repeats > 1 else "")
     against = _against(found, peers)
-    if left:
-        against.insert(0, f"{left} settings were left: {options.budget} of CPU are spent (--budget)")
+    if measured.left:
+        against.append(_left_out(measured, options.budget))
     sections = [
         Section("Errors and costs", against, texts["cost.svg"], "", head, rows, (1,)),
-        Section("Growth with the unknowns", (), texts["phases.svg"], "", exponents, slopes),
+        Section("Growth with the unknowns", (), phases, "", exponents, slopes),
     ]
     if options.verbose:
         tables: list[str | Section] = [replace(section, title="") for section in sections]
@@ -123,6 +127,18 @@ def _evaluated(
         ]
     files = [ledger, *write_texts(ledger.parent, texts)]
     return Findings(files, heading, [ladder.SETTING, *tables, *against], heading, sections)
+
+
+def _left_out(measured: "MeasuredCosts", budget: str) -> str:
+    """Return which settings were left out, and why, as one line."""
+    from partialslip.study.cost.ladder import setting_name
+
+    first = {case.labels["series"]: setting_name(case) for case in reversed(measured.left)}
+    where = "; ".join(f"{name} on" for name in reversed(first.values()))
+    return (
+        f"{len(measured.left)} settings are left out: the cheapest of them is predicted to take "
+        f"{measured.least:.3g} CPU s, and {max(measured.rest, 0.0):.3g} s are left of --budget {budget}: {where}"
+    )
 
 
 def _progress(done: int, total: int, setting: str, left: float) -> str:

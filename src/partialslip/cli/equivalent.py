@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import Commands, add_out, add_scene, check_output
+from partialslip.cli.common import Commands, add_out, add_scene, check_output, of_scene
 from partialslip.cli.findings import Findings, present
 
 if TYPE_CHECKING:
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from partialslip.equivalent import Share
     from partialslip.report.page import Section
+    from partialslip.units import Units
 
 RIG, SCENE = "rig.json", "half-planes.toml"
 
@@ -46,7 +47,7 @@ def _equivalent(options: argparse.Namespace) -> int:
     from partialslip.run import rig_of
     from partialslip.scene.writing import scene_toml
 
-    with working(scene.name) as tell:
+    with working(scene.name) as tell, of_scene(options.scene):
         rig = rig_of(scene)
         found = stand_ins(scene, rig, tell)
     named = found.scene.replace(name=f"{scene.name}-half-planes", title=f"Half-planes that act like {scene.name}"[:200])
@@ -54,7 +55,7 @@ def _equivalent(options: argparse.Namespace) -> int:
         *([f"{scene.name}: {rig.note}"] if rig.note else []),
         f"{scene.name}: {in_words(scene, found.scene, found.data)}",
         "\nThe half-planes gain, where tractions act at x = 0:",
-        _gains(shares(rig, scene)),
+        _gains(shares(rig, scene), scene.units),
         f"The data hold where |x| <= {scene.units.length(rig.reach)}.",
     ]
 
@@ -68,14 +69,17 @@ def _equivalent(options: argparse.Namespace) -> int:
     return present(options, "equivalent", f"{scene.name}-equivalent", scene, find)
 
 
-def _gains(found: "Sequence[Share]") -> "Section":
-    """Return the table of what loads add to half-planes, in SI units with prefixes."""
+def _gains(found: "Sequence[Share]", units: "Units") -> "Section":
+    """Return the table of what loads add to half-planes, in ``units``; in SI units with prefixes."""
     from partialslip.report.page import Section
+    from partialslip.units import SI
 
+    force = "kN/m" if units == SI else units.label("N/m")  # 1 N/mm is as much
     rows = []
     for share in found:
-        name, size = ("1 MPa of sigma", 1e6) if share.load == "sigma" else (f"1 kN/m of {share.load}", 1e3)
-        gains = [(share.curvature, "1/m", 1.0), (share.tilt, "rad", 1.0), (share.sigma, "MPa", 1e6)]
+        name, size = ("1 MPa of sigma", 1e6) if share.load == "sigma" else (f"1 {force} of {share.load}", 1e3)
+        curvature = (share.curvature, f"1/{units.label('m')}", 1 / units.size("m"))
+        gains = [curvature, (share.tilt, "rad", 1.0), (share.sigma, "MPa", 1e6)]
         gains.append((share.sigma_slope, "MPa/mm", 1e9))
         rows.append((name, *(f"{size * gain / unit:.4g} {label}" for gain, label, unit in gains)))
     return Section("", headings=("load", "curvature", "tilt", "tension", "its slope"), rows=rows)

@@ -13,6 +13,7 @@ from partialslip.methods import REFERENCES
 if TYPE_CHECKING:
     from partialslip.fatigue import Assessment
     from partialslip.report.page import Section
+    from partialslip.scene import Scene
 
 
 def add(commands: Commands) -> None:
@@ -61,6 +62,7 @@ def _fatigue(options: argparse.Namespace) -> int:
     try:
         names = chosen(scene, names)  # before anything is solved
         check_distance(scene, options.body)
+        _check_method(scene, options.method)
     except InputError as error:
         raise InputError(f"{options.scene}: {error}") from None
     name = f"{scene.name}-fatigue"
@@ -83,19 +85,25 @@ def _fatigue(options: argparse.Namespace) -> int:
     return present(options, "fatigue", name, scene, find, known, usual, True)
 
 
+def _check_method(scene: "Scene", method: str | None) -> None:
+    """Raise InputError if ``method`` solves unlike bodies, but finds no stresses in them."""
+    if method not in (None, "fem") and not scene.material.alike:
+        raise InputError(f"--with {method}: must be fem for unlike materials; {method} finds no stresses in them")
+
+
 def _printed(found: "Assessment") -> "list[str | Section]":
     """Return the tables of an assessment and the lines between them."""
     from partialslip.fatigue import tables
     from partialslip.report.page import Section
 
-    parts = list[str | Section]()
+    parts: list[str | Section] = [tables.assessment_answer(found)]
     if found.ratings:
-        parts.append(Section("", headings=tables.RATINGS, rows=tables.rating_rows(found), words=(1,)))
-    if rows := tables.average_rows(found):
+        parts.append(Section("", (), "", "", *tables.rating_table(found), (1,)))
+    if (averages := tables.average_table(found))[1]:
         distance = found.scene.units.length(found.scene.fatigue.distance or 0.0)
         parts.append(f"Averaged over {distance} from the surface:")
-        parts.append(Section("", headings=tables.AVERAGES, rows=rows, words=(1,)))
+        parts.append(Section("", (), "", "", *averages, (1,)))
     if found.edges:
         parts.append(f"Ends of the contact, {tables.edge_units(found)}:")
-        parts.append(Section("", headings=tables.EDGES, rows=tables.edge_rows(found)))
+        parts.append(Section("", (), "", "", *tables.edge_table(found)))
     return [*parts, *tables.assessment_notes(found)]

@@ -51,8 +51,8 @@ def add(commands: Commands) -> None:
     )
     add_scene(runs)
     runs.add_argument("--with", dest="methods", metavar="METHODS",
-                      help=f"methods of {', '.join(METHODS)}, separated by commas (default: fem and, of "
-                      "half-planes, the reference: exact where it is known, else march)")  # fmt: skip
+                      help=f"methods of {', '.join(METHODS)}, separated by commas (default: fem and, of one "
+                      "material, exact or else march; with bodies.equivalent exact and equivalent)")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
                       help="accuracy of a, m and n, as a fraction of a; tells the predicted CPU seconds where they are "
                       "known")  # fmt: skip
@@ -83,6 +83,7 @@ def _run(options: argparse.Namespace) -> int:
     budget = _budget(options, scene, methods)
 
     from partialslip.cli.consoles import messages, working
+    from partialslip.fatigue.of_run import of_run
     from partialslip.output.files import write_files
     from partialslip.report import write_run
     from partialslip.run import default_methods
@@ -126,7 +127,8 @@ def _run(options: argparse.Namespace) -> int:
             if options.save is not None:
                 save = Path(options.save)
                 files += write_files(save.parent, {save.name: _state(outcome).save})
-            files += write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
+            if folder:
+                files += write_run(outcome, folder, origin(options), pdf=options.pdf, sections=of_run(outcome))
     paid = _paid(price, budget, outcome, began) if price else []
     return print_outcome(outcome, options, files, paid, elsewhere)
 
@@ -161,6 +163,7 @@ def _price(
     options: argparse.Namespace, scene: "Scene", methods: list[str] | None, budget: float | None, began: float
 ) -> "Price":
     """Return the price of the scene; CPU seconds of the process up to ``began`` are those of its start."""
+    from partialslip.judge.reference import reference
     from partialslip.study.cost.prices import load_prices
 
     price = load_prices().price(scene, methods, began if options.own_process else None)
@@ -168,7 +171,7 @@ def _price(
     if budget is not None and budget < least:
         raise InputError(
             f"--budget {budget:g}s: must be at least {math.ceil(10 * least) / 10:g} s on this machine, the price of "
-            "start and report; or use the exact method alone (--with exact)"
+            "start and report" + "; or use the exact method alone (--with exact)" * (reference(scene).method == "exact")
         )
     return price
 

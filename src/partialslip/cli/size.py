@@ -91,7 +91,7 @@ def _evaluated(scene: "Scene", axes: "list[Axis]", entries: "list[Sized]", ledge
     from partialslip.study.size import sizes, stresses, tables
     from partialslip.study.size.figure import grid_svg, size_svg
 
-    texts, heading = {"cases.csv": csv_text(*sizes.case_table(axes, entries))}, ""
+    texts, heading = {"cases.csv": csv_text(*sizes.case_table(axes, entries, scene.units))}, ""
     sections = list[Section]()
     if len(axes) == 1:
         study = tables.size_study(scene, axes[0], entries)

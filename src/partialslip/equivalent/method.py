@@ -181,7 +181,7 @@ def _checked(scene: Scene) -> Scene:
     scene.bodies.require_no_pin("for equivalent, whose bodies do not turn; use fem")
     if len({P for P, _ in scene.pressing}) > 1:
         raise InputError("load.P: must be constant for equivalent, as the bodies bend with P; use fem")
-    scene.load.require_forces()
+    scene.load.require_forces(scene.units)
     return scene.left_gripped
 
 

@@ -75,7 +75,8 @@ def in_words(scene: Scene, seen: Scene, data: HalfPlaneData) -> str:
     if isinstance(scene.profile, Hertz) and isinstance(seen.profile, Hertz):
         bent = f"R = {units.length(seen.profile.R)}, not {units.length(scene.profile.R)}"
     else:
-        bent = f"a gap of {float(data.curvature.mean()):.4g} 1/m more curvature"
+        more = float(data.curvature.mean()) * units.size("m")
+        bent = f"a gap of {more:.4g} 1/{units.label('m')} more curvature"
     told = [bent]
     ends = [(first, "1"), (second, "2")]
     if np.ptp(data.sigma - [sigma for _, sigma, *_ in scene.load.points]) or np.any(data.sigma_slope):

@@ -53,7 +53,7 @@ def calculix_deck(
     lines = deck_heading(scene, model, "CalculiX deck")
     model = model.in_units(units)
     thickness = model.size
-    small = "" if units == scene.units else ", as CalculiX's mortar contact needs a of 100 units or more"
+    small = "" if units == scene.units else ", as CalculiX's mortar contact errs where a is about a unit or less"
     lines += [
         f"** the deck is in {units.words}{small}",
         f"** a slice of thickness {thickness:.12e} {units.label('m')}: forces and energies per unit depth are its own "

@@ -180,7 +180,7 @@ def _check(scene: Scene) -> None:
     if not scene.profile.even:
         raise InputError("profile.x: must begin at 0 to export; only even gaps")
     scene.require_uniform_friction("to export")
-    scene.load.require_forces()
+    scene.load.require_forces(scene.units)
     if any(scene.load.sigma_slope):
         raise InputError(f"load.sigma_slope = {scene.load.shown('sigma_slope')}: must be 0 or left out to export")
     scene.bodies.require_no_pin("to export")

@@ -8,6 +8,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
+from partialslip.fatigue.accuracy import Errors, criterion_errors, stress_errors
 from partialslip.fatigue.criteria import RUIZ, Criterion, beyond, check_distance, chosen, criterion
 from partialslip.fatigue.critical_plane import Ruiz, ruiz
 from partialslip.fatigue.cycle import settled_criteria, stress_path, unknown_between
@@ -58,6 +59,8 @@ class Rating:
     change : float
         Relative change of the largest value at the surface over half as many load points around the cycle; NaN if
         they were not doubled.
+    errors : Errors or None
+        Estimated relative errors at the surface, and of averages and inside the body; None if they are not known.
     """
 
     criterion: Criterion
@@ -65,6 +68,7 @@ class Rating:
     peak: Spot
     averages: Mapping[str, Spot]
     change: float
+    errors: Errors | None = None
 
 
 @dataclass(frozen=True, eq=False)  # arrays do not compare
@@ -170,7 +174,8 @@ def assess(
     result = solved_with_stresses(scene) if result is None else result
     scene = result.plates.told(scene) if result.plates else scene
     if result.stress_at is None:
-        why = result.undetermined.get("stresses", "run the scene with subsurface=True, or by another method")
+        other = "another method" if scene.material.alike else "fem, as the materials are unlike"
+        why = result.undetermined.get("stresses", f"run the scene with subsurface=True, or by {other}")
         raise InputError(f"{result.method}: stresses are not known; {why}")
     ruiz_asked = RUIZ in names and result.slip is not None and bool(result.slip.slip.any())
     found = [criterion(scene, name, body) for name in names if name != RUIZ]
@@ -178,11 +183,11 @@ def assess(
     unknown = unknown_between(result)
     path = partial(stress_path, scene, result, body)
     phases, changes = settled_criteria(scene.load, found, lambda phases: path(phases, x, np.zeros(1)), not unknown)
-    at = partial(path, phases)
+    at, errors = partial(path, phases), stress_errors(result, body)
     grid = depths(result.a)
     stress = at(x[:, None], grid)
     ratings = {
-        each.name: _rated(each, at, (x, grid, stress), scene.fatigue.distance, change)
+        each.name: _rated(each, at, (x, grid, stress), scene.fatigue.distance, change, errors)
         for each, change in zip(found, changes, strict=True)
     }
     if not all(np.isfinite(spot.value) for rating in ratings.values() for spot in rating.averages.values()):
@@ -214,8 +219,10 @@ def _rated(
     known: tuple[Array, Array, Array],
     distance: float | None,
     change: float,
+    errors: Errors | None,
 ) -> Rating:
-    """What a criterion finds, with stress paths ``known`` on a grid: x (k,), depth (l,), and stress (s, 4, k, l)."""
+    """What a criterion finds, with stress paths ``known`` on a grid: x (k,), depth (l,), and stress (s, 4, k, l); and
+    with the relative ``errors`` of the stresses."""
     x, depth, stress = known
 
     def values(x: Array, depth: Array) -> Array:
@@ -230,7 +237,8 @@ def _rated(
     surface = spot(*largest_at(values, x, depth[:1], on_grid[:, :1]))
     peak = spot(*largest_at(values, x, depth, on_grid))
     averages = {over: spot(surface.x, distance, over) for over in (OVER if distance else ()) if distance}
-    return Rating(of, surface, max(surface, peak, key=lambda each: each.value), averages, change)
+    off = criterion_errors(of, path(np.array(surface.x), np.zeros(())), change, errors)
+    return Rating(of, surface, max(surface, peak, key=lambda each: each.value), averages, change, off)
 
 
 def _ruiz(result: Result, path: Callable[[Array, Array], Array]) -> Ruiz:

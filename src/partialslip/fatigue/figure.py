@@ -9,6 +9,7 @@ from partialslip.arrays import Array
 from partialslip.fatigue.assessment import Assessment
 from partialslip.fatigue.planes import stresses_on
 from partialslip.fatigue.tables import curve
+from partialslip.output.labels import label_lines
 from partialslip.output.svg import svg
 from partialslip.report.answer import scale
 
@@ -19,7 +20,10 @@ if TYPE_CHECKING:
 _WIDE, _DEEP = 2.0, 1.2  # display: half-width and depth of the stress fields, in a
 _COLUMNS, _ROWS = 97, 28  # display: points of a field in each body
 _LEVELS = 10  # display: of contours
-_ABREAST = 4  # display: least number of polar plots that a row has room for
+_LABELS = 6.5  # display: size of labels of contours, points
+_CROSSING, _MARGIN = 1.0, 0.1  # display: labels may be close to other lines, and have room for all of their length
+_ABREAST = {1: 3.4, 2: 2.6}  # display: side of one or two polar plots, inches
+_SIDE = 2.1  # display: of more
 _LINES = (("-", "black"), ("--", "black"), (":", "black"), ("-", "0.55"), ("--", "0.55"), ("-.", "black"))
 _COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_xy")
 
@@ -36,10 +40,8 @@ def stress_svg(found: Assessment) -> str:
     exponent, unit = scale(largest, "Pa", found.scene.units)
 
     def draw(figure: "Figure") -> None:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-        FigureCanvasAgg(figure)  # has a renderer, of which each label of a contour otherwise makes its own
         grid = figure.subplots(3, 2, sharex=True, sharey=True)
+        drawn: list[tuple[Axes, list[tuple[float, Array]]]] = []
         for component, row in enumerate(grid):
             low, high = (
                 extreme([float(which(field[:, component])) for _, field in fields]) / 10.0**exponent
@@ -47,18 +49,26 @@ def stress_svg(found: Assessment) -> str:
             )
             levels = _round_levels(low, high)
             for point, axes in enumerate(row):
+                lines = []
                 for y, field in fields:
                     values = np.ma.masked_invalid(field[point, component] / 10.0**exponent)
                     filled = axes.contourf(x / a, y / a, values, levels, cmap="Greys_r", extend="both")
-                    lines = axes.contour(x / a, y / a, values, levels, colors="black", linewidths=0.5)
-                    axes.clabel(lines, lines.levels[::2], fontsize=6, fmt="%g")
+                    edges = axes.contour(x / a, y / a, values, levels, colors="black", linewidths=0.5)
+                    by_level = zip(edges.levels, edges.allsegs, strict=True)
+                    lines += [(at, line) for at, some in by_level for line in some if len(line)]
                 _outline(axes, found)
                 axes.set(xlim=(x[0] / a, x[-1] / a), ylim=(-_DEEP, _DEEP), aspect="equal")
                 axes.set_title(f"{_COMPONENTS[component]}, {unit}, load point {point + 1}", fontsize=9, loc="left")
+                drawn.append((axes, lines))
             row[0].set_ylabel("y/a")
             figure.colorbar(filled, ax=row, aspect=12, pad=0.02).ax.tick_params(labelsize=7)
         for axes in grid[-1]:
             axes.set_xlabel("x/a")
+        figure.draw_without_rendering()  # label_lines needs the final size of the axes
+        surface = np.column_stack([x / a, 0 * x])
+        for axes, lines in drawn:
+            texts = [f"{at:g}".replace("-", "\N{MINUS SIGN}") for at, _ in lines]
+            label_lines(axes, [line for _, line in lines], texts, surface, _CROSSING, _LABELS, _MARGIN)
 
     return svg(draw, (8.6, 8.0))
 
@@ -127,13 +137,9 @@ def planes_svg(found: Assessment) -> str:
         return ""
     angle = np.linspace(0, 2 * np.pi, 721)
 
-    columns = max(len(rated), _ABREAST)
-
     def draw(figure: "Figure") -> None:
-        grid = figure.subplots(1, columns, subplot_kw={"projection": "polar"})
-        for axes in grid[len(rated) :]:
-            axes.remove()
-        for axes, (name, rating) in zip(grid[: len(rated)], rated.items(), strict=True):
+        grid = figure.subplots(1, len(rated), squeeze=False, subplot_kw={"projection": "polar"})
+        for axes, (name, rating) in zip(grid.flat, rated.items(), strict=True):
             at, measure = rating.surface, rating.criterion.measure
             assert measure
             stress = found.stress(np.array([at.x]), np.array([at.depth]))
@@ -143,10 +149,11 @@ def planes_svg(found: Assessment) -> str:
             axes.plot(normal, [1.0, 1.0], color="black", lw=0.8, ls="--")
             axes.plot(normal + np.pi / 2, [1.0, 1.0], color="0.5", lw=2.0)
             out = f", tilt {np.degrees(at.tilt):.1f}°" if at.tilt > 1e-3 else ""
-            axes.set_title(f"{name}\nnormal at {np.degrees(at.angle):.1f}°{out}", fontsize=9)
+            axes.set_title(f"{name}\nnormal at {np.degrees(at.angle).round(1) + 0.0:.1f}°{out}", fontsize=9)
             axes.set(rticks=[0.5, 1.0], ylim=(0, 1.08))
             axes.set_yticklabels([])
             axes.set_thetagrids(np.arange(0, 360, 45))
             axes.tick_params(labelsize=7)
 
-    return svg(draw, (2.1 * columns + 0.4, 2.9))
+    side = _ABREAST.get(len(rated), _SIDE)
+    return svg(draw, (side * len(rated) + 0.4, side + 0.8))

@@ -39,22 +39,22 @@ def write_assessment(found: Assessment, figures: Mapping[str, str], folder: Path
 def sections(found: Assessment, figures: Mapping[str, str]) -> list[Section]:
     """Return the sections of the report, with the ``figures`` by :func:`drawn`."""
     distance = found.scene.fatigue.distance
+    lines = [tables.assessment_heading(found), tables.assessment_answer(found), *tables.assessment_notes(found)]
     parts = [
         Section(
             "Criteria",
-            [tables.assessment_heading(found) + ".", *(f"{line}." for line in tables.assessment_notes(found))],
+            [f"{line}." for line in lines],
             figures.get("criteria.svg", ""),
             "Criteria along the surface and over the depth. In a slip zone the curves have teeth: the stress peaks "
             "where the stick zone ends at one of the load points. With more load points the tips become the curve.",
-            tables.RATINGS,
-            tables.rating_rows(found),
+            *tables.rating_table(found),
             (1,),
         )
     ]
     if distance:
         length = found.scene.units.length(distance)
         lines = [f"Stresses at a depth of {length}, averaged over a line to this depth, and over a half disc."]
-        parts.append(Section("Averages", lines, headings=tables.AVERAGES, rows=tables.average_rows(found), words=(1,)))
+        parts.append(Section("Averages", lines, "", "", *tables.average_table(found), (1,)))
     if planes := figures.get("planes.svg"):
         caption = (
             "Criteria over the angle of the plane's normal; dashed: normal of the critical plane, grey: its trace."
@@ -68,7 +68,7 @@ def sections(found: Assessment, figures: Mapping[str, str]) -> list[Section]:
             "p = K_N sqrt(d) and adhered dq = K_T/sqrt(d), d from the end; K_S of f p - |dq|/2 in the stick zone:",
             f"{tables.edge_units(found)}.",
         ]
-        parts.append(Section("Ends of the contact", lines, headings=tables.EDGES, rows=tables.edge_rows(found)))
+        parts.append(Section("Ends of the contact", lines, "", "", *tables.edge_table(found)))
     return parts
 
 

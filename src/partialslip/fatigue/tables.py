@@ -1,25 +1,27 @@
 """An assessment as tables, texts and plain data."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.fatigue.accuracy import Errors
 from partialslip.fatigue.assessment import Assessment, Rating, Spot, rough_points
 from partialslip.fatigue.cycle import dense, stress_path
 from partialslip.fatigue.edges import Coefficient
 from partialslip.fatigue.places import OVER, depths, surface_points
 from partialslip.output.files import csv_text
-from partialslip.report.answer import scale
-from partialslip.units import Dimension
+from partialslip.plan import plan
+from partialslip.report.answer import answer_heading, answers, scale, with_error
+from partialslip.run import Run
+from partialslip.units import SI, Dimension
 
-RATINGS = ("criterion", "unit", "surface", "x/a", "angle", "tilt", "largest", "x/a", "depth/a")
-AVERAGES = ("criterion", "unit", *OVER)
-EDGES = ("end", "K_N", "error", "K_T", "predicted slip/a", "slip/a", "K_S", "error")
-_DIGITS = 6  # display: significant
+Table = tuple[Sequence[str], Sequence[Sequence[str]]]
+_SAME = 1e-9  # display: relative change that is none
+_PLACE = 5  # display: significant digits of a place
 _CURVE = 48  # display: intervals of curves between points where stresses may have cusps, and of depth
 
 
@@ -27,85 +29,127 @@ def assessment_heading(found: Assessment) -> str:
     """Return scene, method, body and the number of load points in one line."""
     scene, changes = found.scene, [rating.change for rating in found.ratings.values()]
     settled = not any(math.isnan(change) for change in changes) and bool(changes)
-    half = f"; half as many change the criteria by {max(changes):.1e}" if settled else ""
+    half = "; half as many " if settled else ""
+    if settled:
+        half += "give the same" if max(changes) <= _SAME else f"change the criteria by {max(changes):.1e}"
     return f"{scene.name}, {found.body} body, by {found.result.method}: {len(found.phases)} load points{half}"
 
 
-def rating_rows(found: Assessment) -> list[tuple[str, ...]]:
-    """Return the rows of the table with headings RATINGS: largest values along the surface and in the body, and where
-    they are; angles of the normal of the critical plane, degrees."""
+def assessment_answer(found: Assessment) -> str:
+    """Return the regime, m and n, and a, with their errors, in one line."""
+    run = Run(found.scene, plan(found.scene), {found.result.method: found.result}, {})
+    told = dict(answers(run))
+    return "; ".join([answer_heading(run), *(f"{key} {told[key]}" for key in ("m, n", "a") if key in told)])
+
+
+def rating_table(found: Assessment) -> Table:
+    """Return headings and rows of the largest values along the surface and, where these are larger, in the body, with
+    their errors and places; angles of the normal of the critical plane, degrees."""
     a = found.result.a
-    return [
+    exponent, unit = _length(found)
+    deeper = any(rating.peak != rating.surface for rating in found.ratings.values())
+    inside = ("largest", "x/a", f"x, {unit}", "depth/a") if deeper else ()
+
+    def place(spot: Spot) -> tuple[str, str]:
+        return f"{spot.x / a:.4f}", f"{spot.x / 10.0**exponent:.{_PLACE}g}"
+
+    rows = [
         (
             name,
-            unit,
-            number(rating.surface),
-            f"{rating.surface.x / a:.4f}",
+            label,
+            number(rating.surface, True),
+            *place(rating.surface),
             _degrees(rating.surface.angle),
             _degrees(rating.surface.tilt),
-            number(rating.peak),
-            f"{rating.peak.x / a:.4f}",
-            f"{rating.peak.depth / a:.4f}",
+            *((number(peak, peak == rating.surface), *place(peak), f"{peak.depth / a:.4f}") if deeper else ()),
         )
-        for name, rating, unit, number in _each(found)
+        for name, rating, label, number in _each(found)
+        for peak in [rating.peak]
     ]
+    return ("criterion", "unit", "surface", "x/a", f"x, {unit}", "angle", "tilt", *inside), rows
 
 
-def average_rows(found: Assessment) -> list[tuple[str, ...]]:
-    """Return the rows of the table with headings AVERAGES; empty without distance."""
-    return [
-        (name, unit, *(number(rating.averages[over]) for over in OVER))
+def average_table(found: Assessment) -> Table:
+    """Return headings and rows of the criteria of averaged stresses, with their errors; no rows without distance."""
+    rows = [
+        (name, unit, *(number(rating.averages[over], False) for over in OVER))
         for name, rating, unit, number in _each(found)
         if rating.averages
     ]
+    return ("criterion", "unit", *OVER), rows
 
 
-def _each(found: Assessment) -> Iterator[tuple[str, Rating, str, Any]]:
-    """Name, rating, unit, and a function from spots to texts, of each criterion."""
+def _each(found: Assessment) -> Iterator[tuple[str, Rating, str, Callable[[Spot, bool], str]]]:
+    """Name, rating, unit, and a function from spots, and whether they are at the surface, to texts, of each
+    criterion."""
     for name, rating in found.ratings.items():
         exponent, unit = 0, ""
         if rating.criterion.of != "1":
             exponent, unit = scale(abs(rating.surface.value), rating.criterion.of, found.scene.units)
 
-        def number(spot: Spot, size: float = 10.0**exponent) -> str:
-            return f"{spot.value / size:.{_DIGITS}g}"
+        def number(spot: Spot, surface: bool, errors: Errors | None = rating.errors, exponent: int = exponent) -> str:
+            share = math.nan if errors is None else errors.surface if surface else errors.below
+            return with_error(spot.value, share * abs(spot.value), exponent)
 
         yield name, rating, unit, number
 
 
-def edge_rows(found: Assessment) -> list[tuple[str, ...]]:
-    """Return the rows of the table with headings EDGES, in the units that :func:`edge_units` tells."""
-    a, units = found.result.a, found.scene.units
-    stress, root = units.size("Pa"), math.sqrt(units.size("m"))
-    return [
+def edge_table(found: Assessment) -> Table:
+    """Return headings and rows of the ends of the contact, in the units that :func:`edge_units` tells; without what is
+    not known at either end."""
+    a, root = found.result.a, math.sqrt(found.scene.units.size("m"))
+    (over, _), (times, _) = _edge_stresses(found)
+    headings = ("end", "K_N", "K_T", "predicted slip/a", "slip/a", "K_S")
+    rows = [
         (
             edge.side,
-            *_coefficient(edge.K_N, stress / root),
-            _coefficient(edge.K_T, stress * root)[0],
+            _coefficient(edge.K_N, root, over),
+            _coefficient(edge.K_T, 1 / root, times),
             "" if edge.predicted is None else f"{edge.predicted / a:.4f}",
             "" if edge.found is None else f"{edge.found / a:.4f}",
-            *_coefficient(edge.K_S, stress / root),
+            _coefficient(edge.K_S, root, over),
         )
         for edge in found.edges
     ]
+    known = [number for number, cells in enumerate(zip(*rows, strict=True)) if any(cells)]
+    return [headings[number] for number in known], [[row[number] for number in known] for row in rows]
 
 
 def edge_units(found: Assessment) -> str:
-    """Return the units of the coefficients at the ends of the contact, in words."""
-    stress, length = (found.scene.units.label(of) for of in ("Pa", "m"))
-    return f"K_N and K_S in {stress}/{length}^0.5, K_T in {stress} {length}^0.5"
+    """Return the units of the coefficients at the ends of the contact that are known, in words."""
+    (_, over), (_, times) = _edge_stresses(found)
+    length = found.scene.units.label("m")
+    names = "K_N and K_S" if any(edge.K_S for edge in found.edges) else "K_N"
+    adhered = f", K_T in {times} {length}^0.5" if any(edge.K_T for edge in found.edges) else ""
+    return f"{names} in {over}/{length}^0.5{adhered}"
 
 
 def assessment_notes(found: Assessment) -> list[str]:
-    """Return Ruiz's parameters and remarks as lines."""
-    lines = []
+    """Return Ruiz's parameters, why errors are not known, and remarks, also of the method, as lines."""
+    lines, result = [], found.result
     if found.ruiz:
-        text, a = found.scene.units.labelled, found.result.a
+        text, (exponent, unit) = found.scene.units.labelled, _length(found)
+        first, second = (
+            f"x = {x / result.a:.4f} a, {x / 10.0**exponent:.{_PLACE}g} {unit}" for x in (found.ruiz.x1, found.ruiz.x2)
+        )
         lines += [
-            f"ruiz F1 = {text(found.ruiz.F1, 'Pa^2 m')}, tau delta largest at x = {found.ruiz.x1 / a:.4f} a",
-            f"ruiz F2 = {text(found.ruiz.F2, 'Pa^2 m')} at x = {found.ruiz.x2 / a:.4f} a",
+            f"ruiz F1 = {text(found.ruiz.F1, 'Pa^2 m')}, tau delta largest at {first}",
+            f"ruiz F2 = {text(found.ruiz.F2, 'Pa^2 m')} at {second}",
         ]
-    return [*lines, *found.notes]
+    if any(rating.errors is None for rating in found.ratings.values()):
+        lines.append(f"errors of the criteria are not known: {_without_errors(found)}")
+    return [*lines, *found.notes, *(f"{result.method}: {note}" for note in result.notes)]
+
+
+def _without_errors(found: Assessment) -> str:
+    """Why the errors of criteria are not known."""
+    result = found.result
+    if found.body != "lower":
+        return "they are estimated in the lower body alone"
+    if result.path_dependent:
+        return "slip reverses where the result does not follow"
+    fixed = result.method == "fem" and found.scene.fem.size is not None
+    return f"{result.method} has no estimate of q" + (", as fem.size fixes the mesh; give fem.accuracy" * fixed)
 
 
 def assessment_record(found: Assessment) -> dict[str, Any]:
@@ -125,6 +169,7 @@ def assessment_record(found: Assessment) -> dict[str, Any]:
                 "peak": rating.peak,
                 "averages": dict(rating.averages),
                 "change": rating.change,
+                "errors": rating.errors and rating.errors._asdict(),
             }
             for name, rating in found.ratings.items()
         },
@@ -161,8 +206,23 @@ def curve_csv(found: Assessment, along: str) -> str:
 
 
 def _degrees(angle: float) -> str:
-    return "" if math.isnan(angle) else f"{math.degrees(angle) + 0.0:.1f}"
+    return "" if math.isnan(angle) else f"{round(math.degrees(angle), 1) + 0.0:.1f}"
 
 
-def _coefficient(found: Coefficient | None, unit: float) -> tuple[str, str]:
-    return ("", "") if found is None else (f"{found.value / unit:.6g}", f"{found.error / unit:.1e}")
+def _length(found: Assessment) -> tuple[int, str]:
+    """Exponent of ten and label of the unit of places: mm in SI, where that is near."""
+    a, units = found.result.a, found.scene.units
+    return (-3, "mm") if units == SI and 1e-6 <= a < 1 else scale(a, "m", units)
+
+
+def _coefficient(found: Coefficient | None, times: float, exponent: int) -> str:
+    return "" if found is None else with_error(found.value * times, found.error * times, exponent)
+
+
+def _edge_stresses(found: Assessment) -> tuple[tuple[int, str], tuple[int, str]]:
+    """Exponent of ten and label of the unit of stress in K_N and K_S, and in K_T."""
+    over = [each for edge in found.edges for each in (edge.K_N, edge.K_S)]
+    largest = [
+        max((abs(each.value) for each in of if each), default=0.0) for of in (over, [edge.K_T for edge in found.edges])
+    ]
+    return scale(largest[0], "Pa", found.scene.units), scale(largest[1], "Pa", found.scene.units)

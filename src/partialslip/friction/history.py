@@ -220,7 +220,7 @@ class History:
     def ratchets(self) -> float:
         """Largest net slip of the last cycle, relative to the largest slip of half a cycle, of nodes that stay in
         contact; nearly 0 if they do not slip."""
-        held = (self.pressures[0] > 0) & (self.pressures[1] > 0)  # nodes that open may close elsewhere
+        held = np.min([*self.pressures, *self.around.pressures], axis=0) > 0  # nodes that open may close elsewhere
         if self.held is not None:
             held = self.held
         if not held.any():

@@ -100,6 +100,8 @@ class Leg:
         Rigid shift.
     events, pivots : int
         Number of instants at which rates changed, and of nodes that changed between sticking and slipping.
+    moves : (k, 2) array
+        lambda, and the rigid shift, at the beginning of the leg, at each event and at the end: straight between.
     """
 
     forces: Array
@@ -118,11 +120,13 @@ class Leg:
     shift: float
     events: int
     pivots: int
+    moves: Array
 
     @property
     def mirrored(self) -> "Leg":
         """The leg from minus the forces under minus the loads, without events of its own."""
         turned = {key: -getattr(self, key) for key in ("forces", "rest", "stages", "shifts", "shift")}
+        turned["moves"] = self.moves * [1, -1]
         return replace(self, lowest=-self.highest, highest=-self.lowest, events=0, pivots=0, **turned)
 
     @property
@@ -222,6 +226,7 @@ class _Leg:
         self._along = np.zeros(count)
         self._pivots = 0
         self._checked = 0
+        self._moves = [(0.0, 0.0)]
 
     def followed(self, stages: Sequence[float]) -> Leg:
         wanted, states, events = [*stages], list[tuple[Array, float]](), 0
@@ -299,6 +304,7 @@ class _Leg:
             shift=self._shift,
             events=events,
             pivots=self._pivots,
+            moves=np.array(self._moves),
         )
 
     def _refine(self, least: float = 0.0) -> None:
@@ -470,6 +476,7 @@ class _Leg:
             np.maximum(self._highest, self._forces, out=self._highest)
             np.maximum(self._beyond, np.abs(self._forces) - self._bound, out=self._beyond)
             self._at += step
+            self._moves.append((self._at, self._shift))
             away = self._bound - self._sides * self._forces > self._least
             for node in np.flatnonzero(self._tableau.sticks & away & (self._sides != 0)).tolist():
                 self._put(node, 0)

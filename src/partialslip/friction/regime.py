@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.bars import Asked
+from partialslip.bars import BARS, LARGEST, Asked
 from partialslip.friction.history import STEADY, History
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, EndSlip, Regime, SteadyState
@@ -133,7 +133,7 @@ def steps_of_coupled(history: History | None, errors: Mapping[str, float], accur
     if not history or not history.path.moves:
         return ()
     bars = Asked(accuracy, accuracy).bars
-    known = "too few for the accuracy" if errors else "whose error is not estimated"
+    known = "too few for the accuracy; increase load.steps" if errors else "whose error is not estimated"
     doubted = f", {known}" * (not errors or any(error > bars[key] for key, error in errors.items()))
     steps = "1 step" if history.path.substeps == 1 else f"{history.path.substeps} steps"
     if history.reverses:
@@ -147,7 +147,11 @@ def doubts(change: float | None, errors: Mapping[str, float], accuracy: float) -
     bars = Asked(accuracy, accuracy).bars
     if beyond := {key: error for key, error in errors.items() if error > bars[key]}:
         known = ", ".join(f"{key} {error:.1e}" for key, error in beyond.items())
-        notes += (f"accuracy {accuracy:g} not reached: estimated errors are {known} (ends in a, tractions relative)",)
+        reached = max(error / BARS[key] for key, error in beyond.items())
+        instead = "" if max(beyond.values()) > LARGEST else f", but about {reached:.1e}"
+        notes += (
+            f"accuracy {accuracy:g} not reached{instead}: estimated errors are {known} (ends in a, tractions relative)",
+        )
     if change is not None and change > max(accuracy, STEADY):
         notes += (f"not steady: q changed by {change:.1e} f p0 in the last cycle; increase load.cycles",)
     return notes

@@ -213,7 +213,7 @@ def steady_cycle(scene: Scene) -> Cycle:
 def closed_form(scene: Scene) -> str:
     """Why there is no closed form of the steady cycle of ``scene``, whose pressure varies; empty if there is one."""
     if scene.friction.varies:
-        return "the coefficient of friction varies along x, and the pressure in time: there is no closed form"
+        return "the coefficient of friction varies along x, and the pressure in time: no exact solution is known"
     cycle = steady_cycle(scene)
     if cycle.change:
         return ""
@@ -223,11 +223,11 @@ def closed_form(scene: Scene) -> str:
         if isinstance(scene.profile, Hertz) and scene.even and scene.load.dslope == 0:
             return ""
         without = "a moment and sigma_slope" if scene.load.dslope else "a moment"
-        return f"neither end of the contact slips, and only for hertz without {without} there is a closed form"
+        return f"neither end of the contact slips, and only for hertz without {without} an exact solution is known"
     sides = zip(("left", "right"), cycle.slips, strict=True)
     told = " and ".join(f"the {side} end" for side, how in sides if how == "part of the cycle")
     slips = "slips" if told.count("end") == 1 else "slip"
-    return f"{told} of the contact {slips} at most during part of the cycle: there is no closed form"
+    return f"{told} of the contact {slips} at most during part of the cycle: no exact solution is known"
 
 
 def require_closed_form(scene: Scene) -> None:

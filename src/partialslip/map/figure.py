@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _SIZE = (5.2, 5.0)  # display: inches; narrow, with the legend below, to be read on a phone
 _HATCH, _ONE_STEP = "....", "m, n of one step"
+_TOUCHED = 0.02  # display: hatching fills every cell of the grid that a turn of slip touches: lines end at its border
 _STRIP = 0.025  # display: width of the strip of sliding beyond dQ = 2 f P
 
 
@@ -30,7 +31,9 @@ def map_svg(data: StickMap) -> str:
         axes.plot(*data.border[1:], color="black", lw=2.8, label="m = a in one step: large tension above")
         axes.axvspan(1, 1 + _STRIP, color="0.7", lw=0, label="sliding")
         grid = data.grid
-        axes.contourf(grid.Qf, grid.sf, grid.turned, [0.5, 1.5], colors="none", hatches=[_HATCH])
+        region = grid.Qf, grid.sf, grid.turned
+        axes.contourf(*region, [_TOUCHED, 1.5], colors="none", hatches=[_HATCH])
+        axes.contour(*region, [_TOUCHED], colors="0.5", linewidths=0.6)
         axes.fill_between([], [], [], hatch=_HATCH, fc="none", ec="black", lw=0, label=_ONE_STEP)
         avoided = np.column_stack(data.border[1:])  # no label on the border, nor on the scene's loads
         if data.point:

@@ -131,15 +131,16 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
     Raises
     ------
     InputError
-        If there is no friction, P varies (see :func:`varying_map`), or the pressure is not even; and as
-        :func:`partialslip.halfplane.contact`.
+        If the bodies differ, there is no friction, P varies (see :func:`varying_map`), or the pressure is not even;
+        and as :func:`partialslip.halfplane.contact`.
     """
     if scene is None:
         return _mapped(HertzShape(), _TOP, progress)
-    require_friction(scene)
+    require_stick_zones(scene)
     scene.require_even("for a map", "partialslip.halfplane.one_step_zone takes others, many loads at once")
     if scene.presses_anew:
-        raise InputError(f"load.P = {scene.load.shown('P')}: must be one number for a map over dQ and dsigma")
+        given = scene.load.shown("P", scene.units)
+        raise InputError(f"load.P = {given}: must be one number for a map over dQ and dsigma")
     pressed = contact(scene)
     point, missing = _point(scene, pressed)
     top = max(_TOP, math.ceil(1.2 * point.place[1])) if point else _TOP
@@ -147,8 +148,12 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
     return replace(data, scene=scene, pressed=pressed, point=point, missing=missing)
 
 
-def require_friction(scene: Scene) -> None:
-    """Raise InputError if ``scene`` has no friction, or if its coefficient varies along x."""
+def require_stick_zones(scene: Scene) -> None:
+    """Raise InputError if ``scene`` has unlike bodies, displacements in place of Q, no friction, or a coefficient that
+    varies along x."""
+    if not scene.material.alike:
+        raise InputError("material.upper, material.lower: the bodies differ; must be of one material for a map")
+    scene.load.require_forces(scene.units)
     if scene.friction.f == 0:
         raise InputError("friction.f = 0: must be > 0 for a map: without friction there is no stick zone")
     scene.require_uniform_friction("for a map")

@@ -19,7 +19,7 @@ from partialslip.halfplane.mean_pressure import Mean
 from partialslip.halfplane.steady import stick_zones
 from partialslip.halfplane.varying import closed_form
 from partialslip.judge.reference import reference
-from partialslip.map.grid import Point, require_friction
+from partialslip.map.grid import Point, require_stick_zones
 from partialslip.run import run
 from partialslip.scene import Pressing, Scene
 
@@ -99,10 +99,10 @@ def varying_map(scene: Scene, progress: Callable[[str], None] = lambda _: None) 
     Raises
     ------
     InputError
-        If there is no friction, the pressure is not even, P or Q is constant, or the loads are not in phase; and as
-        :func:`partialslip.halfplane.contact`.
+        If the bodies differ, there is no friction, the pressure is not even, P or Q is constant, or the loads are not
+        in phase; and as :func:`partialslip.halfplane.contact`.
     """
-    require_friction(scene)
+    require_stick_zones(scene)
     scene.require_even(_PURPOSE)
     load = scene.load
     if not scene.presses_anew:
@@ -110,7 +110,7 @@ def varying_map(scene: Scene, progress: Callable[[str], None] = lambda _: None) 
     if not load.in_phase:
         raise InputError(f"load.Q, load.sigma, load.P: must be in phase {_PURPOSE}")
     if load.dQ == 0:
-        raise InputError(f"load.Q = {load.shown('Q')}: must vary {_PURPOSE}")
+        raise InputError(f"load.Q = {load.shown('Q', scene.units)}: must vary {_PURPOSE}")
     pressed = contact(scene)
     count = _COUNT_KINKED if pressed.shape.kinks else _COUNT
     shares = np.linspace(0, 1, count, endpoint=False)  # of dQ = f (P1 + P2), and of dP = P

@@ -44,7 +44,7 @@ def solve(
         mean displacements of the cells of half-planes along x, in A. Of bodies of like materials.
     """
     clock = Clock(allowance)
-    scene.load.require_forces()
+    scene.load.require_forces(scene.units)
     if not scene.material.alike:
         scene.require_no_moment("by march with bodies of different materials")
         return march(unlike.UnlikeBodies(scene, plan, start, clock), progress)[0]

@@ -116,11 +116,13 @@ def is_at(handle: int, path: Path) -> bool:
 
 def _taken(path: Path) -> tuple[int, str]:
     """Open and lock the file at ``path``. Returns the handle, and the holder if another process has the lock."""
+    failed = OSError(errno.EBUSY, "other processes keep locking it")
     for _ in range(TRIES):
         try:
             make_folder(path.parent)
             handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
-        except FileNotFoundError:  # the previous holder has just removed the empty folder
+        except FileNotFoundError as error:  # no folder can be, or the last holder has just removed the empty one
+            failed = error
             continue
         if lock(handle) is False:
             holder = os.read(handle, 200).decode(errors="replace")
@@ -131,7 +133,7 @@ def _taken(path: Path) -> tuple[int, str]:
             os.write(handle, f"process {os.getpid()} on {platform.node()}".encode(errors="replace"))
             return handle, ""
         os.close(handle)
-    raise OSError(errno.EBUSY, "other processes keep locking it")
+    raise failed
 
 
 def _remove(folders: list[Path]) -> None:

@@ -12,6 +12,8 @@ from markupsafe import Markup
 from partialslip.errors import MissingLibraryError
 from partialslip.output.files import write_files
 
+_NARROW = 420.0  # display: pt
+
 
 @functools.cache
 def template(package: str, name: str) -> Template:
@@ -24,6 +26,7 @@ def template(package: str, name: str) -> Template:
         lstrip_blocks=True,
     )
     environment.filters["inline"] = _inline
+    environment.tests["narrow"] = _narrow
     return environment.get_template(name)
 
 
@@ -31,6 +34,12 @@ def _inline(svg: str, name: str = "") -> Markup:
     """Return a figure for embedding in a page. The prefix ``name`` makes the figure's ids unique in the page."""
     own = re.sub(r'(\bid="|href="#|url\(#)', lambda found: found[0] + name, svg[svg.index("<svg") :])
     return Markup(own)
+
+
+def _narrow(svg: str) -> bool:
+    """Return whether a figure is too narrow to fill the width of a page."""
+    width = re.search(r'<svg[^>]*\bwidth="([\d.]+)pt"', svg)
+    return width is not None and float(width[1]) < _NARROW
 
 
 def render_page(

@@ -15,7 +15,7 @@ import json
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -38,6 +38,11 @@ _WHO = ("command", "scene.name")  # whose files they are
 Data = Mapping[str, Any]
 
 
+def _as_json(_: str, value: object) -> str:
+    """Return the value of a setting as text."""
+    return f"{value:g}" if isinstance(value, float) else json.dumps(value)
+
+
 @dataclass(frozen=True)
 class Request:
     """What a command is asked for.
@@ -49,10 +54,13 @@ class Request:
     plain : mapping or None
         The same of the command without options, for the scene as its file has it. None if there is no such request, as
         the file needs an option to be a scene, or if the user names the place.
+    text : callable, optional
+        ``text(key, value)``: the value of a setting as the user knows it, by dotted key.
     """
 
     asked: Data
     plain: Data | None
+    text: Callable[[str, object], str] = field(default=_as_json, compare=False)
 
     def __post_init__(self) -> None:
         for key in ("asked", "plain"):  # as JSON reads them back
@@ -110,24 +118,23 @@ def placed(usual: Path, out: str | Path | None, request: Request, force: bool = 
         request there.
     """
     folders, elsewhere = (request.places(usual), request.changed) if out is None else ([Path(out)], "")
-    asked = dict(request.asked)
     with ExitStack() as stack:
         for folder in folders:
-            held = None if force else _other(folder, asked)
+            held = None if force else _other(folder, request)
             if held is None:
                 try:
                     stack.enter_context(locked(folder))
-                    held = None if force else _other(folder, asked)
+                    held = None if force else _other(folder, request)
                     if held is None:
                         break
                     stack.pop_all().close()  # another process has just finished there
                 except FolderInUseError:
-                    if folder == folders[-1] or (held := _asked_by_holder(folder, asked)) is None:
+                    if folder == folders[-1] or (held := _asked_by_holder(folder, request)) is None:
                         raise
             if folder == folders[-1]:
                 raise InputError(f"--out {folder}: holds {held}: name another folder, or overwrite it with --force")
             elsewhere = f"{folder} holds {held}"
-        stack.enter_context(_answering(folder, asked))
+        stack.enter_context(_answering(folder, request.asked))
         yield Place(folder, elsewhere)
 
 
@@ -169,7 +176,7 @@ def content(path: Path) -> list[str]:
 
 
 @contextmanager
-def _answering(folder: Path, asked: dict[str, Any]) -> Iterator[None]:
+def _answering(folder: Path, asked: Data) -> Iterator[None]:
     """Write the request ``asked`` into ``folder``. An end by an exception that has written nothing else undoes it."""
     files = _files(folder)
     before = _request(folder) if files else None
@@ -190,23 +197,23 @@ def _write_request(folder: Path, request: Data | None) -> None:
     write_texts(folder, {REQUEST_NAME: json.dumps(request, indent=1) + "\n"})
 
 
-def _other(folder: Path, asked: dict[str, Any]) -> str | None:
-    """Return in words what ``folder`` holds; None if it holds no results, or the answer to ``asked``."""
+def _other(folder: Path, request: Request) -> str | None:
+    """Return in words what ``folder`` holds; None if it holds no results, or the answer to ``request``."""
     held, files = _request(folder), _files(folder)
-    if not files or held == asked:
+    if not files or held == request.asked:
         return None
     if held is None:
         own = next((name for name in RESULTS if name in files and (folder / name).is_file()), None)
         return None if own is None else f"{own} of unknown settings"
-    return _in_words(held, asked)
+    return _in_words(held, request)
 
 
-def _asked_by_holder(folder: Path, asked: dict[str, Any]) -> str | None:
-    """Return in words what the process that has locked ``folder`` answers; None if it answers ``asked``, or if it does
-    not say."""
+def _asked_by_holder(folder: Path, request: Request) -> str | None:
+    """Return in words what the process that has locked ``folder`` answers; None if it answers ``request``, or if it
+    does not say."""
     for _ in range(_TRIES):
         if (held := _request(folder)) is not None:
-            return None if held == asked else _in_words(held, asked)
+            return None if held == request.asked else _in_words(held, request)
         time.sleep(_PAUSE)
     return None
 
@@ -227,13 +234,13 @@ def _files(folder: Path) -> dict[str, int]:
         return {}
 
 
-def _in_words(held: Data, asked: Data) -> str:
-    """Return the request ``held`` in words, with the settings that differ from ``asked``."""
-    theirs, differ = _flat(held), _differing(held, asked)
+def _in_words(held: Data, request: Request) -> str:
+    """Return the request ``held`` in words, with the settings that differ from ``request``."""
+    theirs, differ = _flat(held), _differing(held, request.asked)
     who = " ".join(str(theirs[key]) for key in _WHO if theirs.get(key))
     if any(key in differ for key in _WHO):
         return who
-    return f"{who} with other settings: {_some([_setting(key, theirs.get(key)) for key in differ])}"
+    return f"{who} with other settings: {_some([_setting(key, theirs.get(key), request.text) for key in differ])}"
 
 
 def _differing(one: Data, other: Data) -> list[str]:
@@ -248,10 +255,12 @@ def _some(texts: list[str]) -> str:
     return ", ".join(texts[:_MOST] + more)
 
 
-def _setting(key: str, value: object) -> str:
+def _setting(key: str, value: object, text: Callable[[str, object], str]) -> str:
     name = _short(key)
-    text = f"{value:g}" if isinstance(value, float) else json.dumps(value)
-    return f"no {name}" if value is None else f"{name} = {text}" if len(text) <= _LONGEST else f"other {name}"
+    if value is None:
+        return f"no {name}"
+    told = text(name, value)
+    return f"{name} = {told}" if len(told) <= _LONGEST else f"other {name}"
 
 
 def _short(key: str) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from partialslip.judge.reference import reference
 from partialslip.result import Result
+from partialslip.result.peak import peak_error
 from partialslip.run import Run
 from partialslip.units import PREFIXES, SI, Dimension, Units
 
@@ -177,7 +178,7 @@ def _stresses(run: Run) -> Iterator[tuple[str, str]]:
     known = _first(run, lambda result: result.surface is not None)
     if not known or not known.result.surface:
         return
-    surface = known.result.surface
+    surface, off = known.result.surface, peak_error(known.result)
     exponent, label = _unit(run, known.result.a, "m")
     for point, sigma in enumerate(surface.sigma[0]):
         index, last = int(sigma.argmax()), len(sigma) - 1
@@ -186,8 +187,9 @@ def _stresses(run: Run) -> Iterator[tuple[str, str]]:
         error = _estimate(known.result, "a") * known.result.a if _at_an_end(place, known.result) else float(beside)
         far = index in (0, last)
         where = "away from the contact" if far else f"at x = {with_error(place, error, exponent)} {label}"
-        value = _stress(run, float(sigma.max()), known, f"q{point + 1}")
-        yield f"largest sigma_xx, {point + 1}", f"{value} {where}{_by(known)}"
+        power, unit = _unit(run, float(sigma.max()), "Pa")
+        value = with_error(float(sigma.max()), math.nan if off is None else off, power)
+        yield f"largest sigma_xx, {point + 1}", f"{value} {unit} {where}{_by(known)}"
 
 
 def _plates(run: Run) -> Iterator[tuple[str, str]]:

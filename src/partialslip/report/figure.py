@@ -10,6 +10,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.methods import METHODS
 from partialslip.output.svg import svg
+from partialslip.report.rows import half_planes
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Friction, Scene, Tabulated
@@ -29,9 +30,10 @@ _MARGIN = 0.04  # display: beyond the contact, in a
 _ALL = "1", "D"  # display: marks of p and q with all effects
 
 
-def traction_svg(run: Run) -> str:
-    """Return the traction plot of ``run`` as SVG; below it, the errors of the compared methods along the contact."""
-    if not run.comparisons:
+def traction_svg(run: Run, *, errors: bool = True) -> str:
+    """Return the traction plot of ``run`` as SVG; below it, with ``errors``, those of the compared methods along the
+    contact."""
+    if not (errors and run.comparisons):
         return svg(lambda figure: draw_run(figure.subplots(), run), _SIZE)
 
     def draw(figure: "Figure") -> None:
@@ -41,6 +43,13 @@ def traction_svg(run: Run) -> str:
         draw_errors(below, run)
 
     return svg(draw, (_SIZE[0], 1.6 * _SIZE[1]))
+
+
+def error_svg(run: Run) -> str:
+    """Return the errors of the compared methods of ``run`` along the contact as SVG; empty without any."""
+    if not run.comparisons:
+        return ""
+    return svg(lambda figure: draw_errors(figure.subplots(), run), (_SIZE[0], 0.6 * _SIZE[1]))
 
 
 def mesh_svg(run: Run) -> str:
@@ -69,13 +78,14 @@ def mesh_svg(run: Run) -> str:
 
 
 def draw_run(axes: "Axes", run: Run) -> None:
-    """Draw the tractions of all methods of ``run`` on ``axes``, scaled by the reference."""
-    draw_tractions(axes, from_reference(run), run.scene.friction)
+    """Draw the tractions of all methods of ``run`` on ``axes``, scaled by the first of :func:`in_order`."""
+    draw_tractions(axes, in_order(run), run.scene.friction)
 
 
-def from_reference(run: Run) -> dict[str, Result]:
-    """Return the results of ``run`` by method, that of the reference first."""
-    first = run.reference or next(iter(run.results))
+def in_order(run: Run) -> dict[str, Result]:
+    """Return the results of ``run`` by method, first that of the reference; of finite bodies that which answers, as
+    half-planes only stand for them."""
+    first = run.answering if run.scene.finite else run.reference or next(iter(run.results))
     return {first: run.results[first]} | run.results
 
 
@@ -94,23 +104,24 @@ def draw_tractions(
     shear : str, optional
         Name of the shear in the labels; default: q/(f p0) or q/p0.
     """
-    reference = next(iter(results.values()))
+    leading, reference = next(iter(results.items()))
     a, p0 = reference.a, reference.p0
     unit, usual = (p0, "q/p0") if friction is None else (friction.f * p0, "q/(f p0)")
     shear = shear or usual
     if reference.m is not None and reference.n is not None:
-        axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label="stick zone [-m, n]")
+        whose = f", {_plain(leading)}" if len(results) > 1 else ""
+        axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label=f"stick zone [-m, n]{whose}")
     shears = bool(reference.traction.dq.any())
     for name, result in results.items():
-        traction, name = result.traction, name.replace("$", r"\$")
+        traction, label = result.traction, _plain(name)
         if traction.cells is None:
             x, p, q = traction.x, traction.p, traction.dq / 2
-            axes.plot(x / a, p / p0, color="0.45", lw=1, ls="--", label=f"p/p0, {name}")
+            axes.plot(x / a, p / p0, color="0.45", lw=1, ls="--", label=f"p/p0, {label}")
             bound, line = p, "--"
             if traction.p1 is not None:
                 first = traction.p1
                 bound, line = (first + p) / 2, "-."
-                axes.plot(x / a, first / p0, color="0.45", lw=1, ls=":", label=f"p/p0 at load point 1, {name}")
+                axes.plot(x / a, first / p0, color="0.45", lw=1, ls=":", label=f"p/p0 at load point 1, {label}")
                 axes.plot(x / a, bound / p0, color="0.45", lw=0.8, ls=line, label="mean of both, bounds q/f")
             if shears:
                 if friction is not None:
@@ -120,12 +131,12 @@ def draw_tractions(
                         style["ls"] = (0, (1, 1))
                         axes.plot(x / a, bound * share / p0, **style, label="bounds ±f(x) p/(f p0)")
                     axes.plot(x / a, -bound * share / p0, **style)
-                axes.plot(x / a, q / unit, color="black", lw=1.4, label=f"{shear}, {name}")
+                axes.plot(x / a, q / unit, color="black", lw=1.4, label=f"{shear}, {label}")
         else:
             x = _spread(result)
             found = traction.at(x)
             marks = METHODS[name].marks if name in METHODS else _ALL
-            axes.plot(x / a, found.p / p0, marks[0], ms=6, color="black", ls="", label=f"p/p0, {name}")
+            axes.plot(x / a, found.p / p0, marks[0], ms=6, color="black", ls="", label=f"p/p0, {label}")
             if shears:
                 axes.plot(
                     x / a,
@@ -134,37 +145,53 @@ def draw_tractions(
                     mfc="white",
                     mec="black",
                     ms=4.5,
-                    label=f"{shear}, {name}",
+                    label=f"{shear}, {label}",
                 )
     axes.axhline(0, color="0.7", lw=0.6, zorder=0)
-    axes.set(xlabel="x/a", ylabel=f"tractions: p/p0 and {shear}", xlim=_limits(reference))
+    axes.set(xlabel="x/a", ylabel=f"tractions: p/p0 and {shear}", xlim=_limits(results))
     _legend_above(axes)
 
 
-def _limits(reference: Result) -> tuple[float, float]:
-    """Return the smallest and the largest x/a of a figure along the contact."""
-    left, right = np.array(reference.ends).T / reference.a
-    return float(left.min()) - _MARGIN, float(right.max()) + _MARGIN
+def _limits(results: Mapping[str, Result]) -> tuple[float, float]:
+    """Return the smallest and the largest x/a of a figure along the contact, a being that of the first result."""
+    low, high = _span(*(pair for result in results.values() for pair in result.ends))
+    a = next(iter(results.values())).a
+    return low / a - _MARGIN, high / a + _MARGIN
+
+
+def _span(*ends: tuple[float, float]) -> tuple[float, float]:
+    """Return the leftmost and the rightmost of some pairs of ``ends``."""
+    lefts, rights = zip(*ends, strict=True)
+    return min(lefts), max(rights)
+
+
+def _plain(name: str) -> str:
+    """Return a name that matplotlib takes for no formula."""
+    return name.replace("$", r"\$")
 
 
 def draw_errors(axes: "Axes", run: Run) -> None:
     """Draw |p - p_ref|/p0 and |q - q_ref|/(f p0) of each compared method on logarithmic ``axes``, at its points.
 
-    ``run`` must have a reference. Errors below 1e-17 are not drawn.
+    ``run`` must have a reference. Errors below 1e-17 are not drawn, nor are those beyond both contacts, where there is
+    rounding alone.
     """
-    reference = run.results[run.reference or ""]
-    a, p0, f = reference.a, reference.p0, run.scene.friction.f
-    left, right = _limits(reference)
+    shown, reference = in_order(run), run.results[run.reference or ""]
+    first, f = next(iter(shown.values())), run.scene.friction.f
+    a, p0 = first.a, first.p0
     for name, line in zip(run.comparisons, cycle(_ERROR_LINES)):
-        traction, shown = run.results[name].traction, name.replace("$", r"\$")
-        x = traction.x[(traction.x >= left * a) & (traction.x <= right * a)]
-        found, true = traction.at(x), reference.traction.at(x)
-        _draw_error(axes, x / a, (found.p - true.p) / p0, "0.55", line, f"p, {shown}")
+        result, label = run.results[name], _plain(name)
+        x = result.traction.x
+        found, true = result.traction.at(x), reference.traction.at(x)
+        at_2 = _span(result.ends[1], reference.ends[1])  # p is that of load point 2
+        _draw_error(axes, x, a, (found.p - true.p) / p0, at_2, color="0.55", ls=line, label=f"p, {label}")
         if f and (found.dq.any() or true.dq.any()):
-            _draw_error(axes, x / a, (found.dq - true.dq) / 2 / (f * p0), "black", line, f"q, {shown}")
+            ends, q = _span(*result.ends, *reference.ends), (found.dq - true.dq) / 2 / (f * p0)
+            _draw_error(axes, x, a, q, ends, color="black", ls=line, label=f"q, {label}")
     from matplotlib.ticker import LogLocator, NullLocator
 
-    axes.set(yscale="log", xlabel="x/a", ylabel="error, in p0 and f p0", xlim=(left, right))
+    what = "difference" if half_planes(run) else "error"
+    axes.set(yscale="log", xlabel="x/a", ylabel=f"{what}, in p0 and f p0", xlim=_limits(shown))
     # few ticks and plain text: small ticks and formulas take longer to lay out than all lines together
     axes.yaxis.set_major_locator(LogLocator(numticks=6))
     axes.yaxis.set_major_formatter("{x:.0e}")
@@ -173,9 +200,11 @@ def draw_errors(axes: "Axes", run: Run) -> None:
     _legend_above(axes)
 
 
-def _draw_error(axes: "Axes", x: Array, error: Array, color: str, line: str, label: str) -> None:
-    size = np.abs(error)
-    axes.plot(x, np.where(size > _LEAST, size, np.nan), lw=0.9, color=color, ls=line, label=label)
+def _draw_error(axes: "Axes", x: Array, a: float, error: Array, ends: tuple[float, float], **style: Any) -> None:
+    """Draw the ``error`` between the ``ends``, at points x/a."""
+    within = (x > ends[0]) & (x < ends[1])
+    size = np.abs(error[within])
+    axes.plot(x[within] / a, np.where(size > _LEAST, size, np.nan), lw=0.9, **style)
 
 
 def _legend_above(axes: "Axes") -> None:

@@ -1,6 +1,6 @@
 """Write the files of a run."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,8 @@ from partialslip.origin import Made, made_now
 from partialslip.output.files import csv_text, write_files, write_texts
 from partialslip.output.page import write_pdf
 from partialslip.record import record
-from partialslip.report.page import run_page
+from partialslip.report.loop import loop_csv
+from partialslip.report.page import Section, run_page
 from partialslip.run import Run
 from partialslip.units import Dimension, Units
 
@@ -21,10 +22,14 @@ _DIMENSIONS: dict[str, Dimension] = {"method": "1", "x": "m", "x_over_a": "1"}  
 PAGE, PDF = "report.html", "report.pdf"
 
 
-def write_run(run: Run, folder: Path, made: Made | None = None, *, pdf: bool = False) -> list[Path]:
+def write_run(
+    run: Run, folder: Path, made: Made | None = None, *, pdf: bool = False, sections: Sequence[Section] = ()
+) -> list[Path]:
     """Write results.json, tractions.csv and report.html of ``run`` into ``folder``. Returns the paths.
 
-    ``made`` is the origin of the run (default: now, by a call from Python). With ``pdf``, also write report.pdf.
+    ``made`` is the origin of the run (default: now, by a call from Python). With ``pdf``, also write report.pdf. The
+    report has further ``sections``.
+    Where the plates of two finite bodies are known, also write loop.csv: displacement and Q in the steady cycle.
     If fields inside the bodies were asked for, also write surface.csv, bodies.vtu and mesh.msh; lower.msh and upper.msh
     instead of mesh.msh if the bodies are not mirror images.
 
@@ -36,12 +41,14 @@ def write_run(run: Run, folder: Path, made: Made | None = None, *, pdf: bool = F
         If a library for the PDF is missing.
     """
     made = made or made_now()
-    data, html = record(run, made=made), run_page(run, made)
+    data, html = record(run, made=made), run_page(run, made, sections)
     files: dict[str, Callable[[Path], object]] = {
         "results.json": lambda path: path.write_text(data.json, "utf-8"),
         "tractions.csv": lambda path: path.write_text(tractions_csv(run), "utf-8"),
         PAGE: lambda path: path.write_text(html, "utf-8"),
     }
+    if loop := loop_csv(run):
+        files["loop.csv"] = lambda path: path.write_text(loop, "utf-8")
     fields = run.plan.needs("subsurface")
     if fields and (bodies := next((result.bodies for result in run.results.values() if result.bodies), None)):
         from partialslip_meshes.write import write_msh, write_vtu

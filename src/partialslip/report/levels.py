@@ -9,7 +9,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.output.svg import svg
 from partialslip.report.answer import scale
-from partialslip.report.figure import draw_tractions, from_reference
+from partialslip.report.figure import draw_tractions, in_order
 from partialslip.result import Result
 from partialslip.scene import Friction
 from partialslip.units import Dimension, Units
@@ -26,7 +26,7 @@ _LINES = ("--", "-")  # display: of the first method, at load points 1 and 2
 _MARKS = (("s", "o"), ("^", "v"), ("<", ">"))  # display: of the other methods in turn, at load points 1 and 2
 _MOST = 41  # display: marks on a curve
 _REACH = 3.0  # display: farthest distance from the middle of the contact, in a
-_SIZE = 6.4, 4.0  # display: of one plot, inches
+_SIZE = 5.6, 3.8  # display: of one plot, inches
 _BELOW = -0.17  # display: of the legend: leaves room for the label of the axis, and none is needed above for a title
 
 
@@ -59,7 +59,8 @@ def draw_levels(
         draw_tractions(axes, results, friction)
     else:
         _draw_levels(axes, results, shown, friction, units)
-    axes.legend(loc="upper left", bbox_to_anchor=(0.0, _BELOW), ncols=2, frameon=False, fontsize=9)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, _BELOW), ncols=2, frameon=False, fontsize=9, handlelength=1.6,
+                columnspacing=1.2)  # fmt: skip
 
 
 def levels_svg(run: "Run") -> str:
@@ -69,7 +70,7 @@ def levels_svg(run: "Run") -> str:
     some = [shown for shown in every if any(_curves(result, shown) for result in run.results.values())]
     if "stress" not in some:
         return ""
-    results, friction, units = from_reference(run), run.scene.friction, run.scene.units
+    results, friction, units = in_order(run), run.scene.friction, run.scene.units
 
     def draw_all(figure: "Figure") -> None:
         for axes, shown in zip(figure.subplots(len(some), 1, squeeze=False).flat, some, strict=True):

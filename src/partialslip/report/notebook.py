@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from partialslip.judge import Comparison
 from partialslip.output.page import template
 from partialslip.report import answer, rows
-from partialslip.report.figure import from_reference
+from partialslip.report.figure import in_order
 from partialslip.report.levels import Shown, draw_levels
 from partialslip.result import Result
 from partialslip.run import Run
@@ -32,5 +32,5 @@ def plot(what: Result | Run, axes: "Axes | None", shown: Shown, in_units: bool) 
     if isinstance(what, Result):
         draw_levels(axes, {what.method: what}, shown, None, SI if in_units else None)
     else:
-        draw_levels(axes, from_reference(what), shown, what.scene.friction, what.scene.units if in_units else None)
+        draw_levels(axes, in_order(what), shown, what.scene.friction, what.scene.units if in_units else None)
     return axes

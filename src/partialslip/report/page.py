@@ -7,8 +7,9 @@ from partialslip.origin import Made, origin_lines
 from partialslip.output.page import render_page
 from partialslip.report import answer, rows
 from partialslip.report.answer import amounts
-from partialslip.report.figure import mesh_svg, profile_svg, traction_svg
+from partialslip.report.figure import error_svg, mesh_svg, profile_svg, traction_svg
 from partialslip.report.levels import levels_svg
+from partialslip.report.loop import loop_remark, loop_rows, loop_svg
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import Run
 from partialslip.scene import Scene
@@ -16,7 +17,7 @@ from partialslip.scene import Scene
 
 @dataclass(frozen=True)
 class Section:
-    """A section of the report of a study: paragraphs, then a figure, then a table.
+    """A section of a report: paragraphs, then a figure, then a table.
 
     Parameters
     ----------
@@ -40,8 +41,8 @@ class Section:
     words: Sequence[int] = ()
 
 
-def run_page(run: Run, made: Made) -> str:
-    """Return the report of ``run``, of the origin ``made``, as HTML."""
+def run_page(run: Run, made: Made, sections: Sequence[Section] = ()) -> str:
+    """Return the report of ``run``, of the origin ``made``, as HTML; with further ``sections``."""
     return render_page(
         "partialslip.report",
         "run.html",
@@ -52,9 +53,12 @@ def run_page(run: Run, made: Made) -> str:
         run=run,
         rows=rows,
         answer=answer,
-        figure=traction_svg(run),
+        figure=traction_svg(run, errors=False),
+        errors=error_svg(run),
         amounts=amounts(run.results, run.scene.units),
         levels=levels_svg(run),
+        sections=sections,
+        plates={"figure": loop_svg(run), "rows": loop_rows(run), "remark": loop_remark(run)},
         mesh=mesh_svg(run),
         profile=profile_svg(run.scene),
         sketch=sketch_svg(run.scene),

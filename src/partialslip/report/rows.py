@@ -39,15 +39,35 @@ _MEANING = {
     for key, text in {"left": "left end", "right": "right end", "P": "P", "M": "M", "p": "p"}.items()
     for point in (1, 2)
 }  # fmt: skip
+HALF_PLANES = ("exact", "march")  # methods that know no finite bodies
 _IN_A = ("fem.accuracy", "fem.size", "fem.width")  # settings in contact half-widths
 _WORDS = {Outcome.PASSED: "ok", Outcome.MISSED: "MISSED", Outcome.NOT_JUDGED: "not judged"}
 _EVEN = 1e-4  # display: of a: a contact whose middle is nearer to x = 0 is even, to the error of elements
 _DIGITS, _MOST = 7, 10  # display: decimals of values: the usual number, and the largest if the error is smaller
 
 
+def beside_half_planes(run: Run, name: str) -> bool:
+    """Return whether method ``name`` of ``run`` stands beside half-planes in the place of finite bodies: then it is
+    half-planes that are off."""
+    return run.scene.finite and run.reference in HALF_PLANES and name not in HALF_PLANES
+
+
+def half_planes(run: Run) -> bool:
+    """Return whether any method of ``run`` stands :func:`beside_half_planes`."""
+    return any(beside_half_planes(run, name) for name in run.comparisons)
+
+
 def error_headings(run: Run, name: str) -> list[str]:
     """Return the headings of the table of :func:`error_rows` for method ``name`` of ``run``."""
-    return [{"reference": run.reference or "", "value": name}.get(heading, heading) for heading in HEADINGS]
+    named = {"reference": run.reference or "", "value": name}
+    if beside_half_planes(run, name):
+        named |= {"reference": "half-planes", "error": "difference"}
+    return [named.get(heading, heading) for heading in HEADINGS]
+
+
+def error_title(run: Run, name: str) -> str:
+    """Return the title of the table of :func:`error_rows` for method ``name`` of ``run``."""
+    return f"What half-planes are off by, beside {name}" if beside_half_planes(run, name) else f"Errors of {name}"
 
 
 def error_rows(comparison: Comparison, *, every: bool = False) -> list[tuple[str, ...]]:
@@ -99,13 +119,16 @@ def word(verdict: Verdict) -> str:
 def units(run: Run) -> str:
     """Return the units of the error tables in one line: f p0 and P, and a and p0 if the answer shows others."""
     reference, scene, text = run.results[run.reference or ""], run.scene, run.scene.units.text
+    own = run.results[run.answering]
+    above = f" (m, n above: in a of {own.method})" if own.m is not None else ""
+    whose = f"half-planes ({run.reference})" if scene.finite and run.reference in HALF_PLANES else run.reference
     parts = {
-        "a": scene.units.length(reference.a) if run.reference != run.answering else "",
+        "a": scene.units.length(reference.a) + above if run.reference != run.answering else "",
         "p0": text(reference.p0, "Pa", 6) if run.reference != run.answering else "",
         "f p0": text(scene.friction.f * reference.p0, "Pa", 6) if scene.friction.f else "",
         "P": text(scene.P, "N/m", 6),
     }
-    return f"{run.reference}: " + ", ".join(f"{key} = {size}" for key, size in parts.items() if size)
+    return f"{whose}: " + ", ".join(f"{key} = {size}" for key, size in parts.items() if size)
 
 
 def unjudged(comparison: Comparison) -> list[str]:
@@ -131,7 +154,7 @@ def verdict_lines(run: Run) -> tuple[str, ...]:
         wanted = run.asked.text if run.asked else ""
         nothing = next((each.regime for each in run.results.values() if each.m is None), "")
         if found.outcome is Outcome.PASSED:
-            return (", ".join(filter(None, [found.text, nothing])) + f": {wanted}",)
+            return (", ".join(filter(None, [found.text, nothing])) + f": {wanted}{_larger_estimates(run)}",)
         return (f"asked: {wanted}", found.text) if wanted else (found.text,)
     if run.plan.missing:
         return (f"{found.text}: forced off: {', '.join(run.plan.missing)}; the errors measure these effects",)
@@ -143,6 +166,20 @@ def verdict_lines(run: Run) -> tuple[str, ...]:
         "the element size was given": scene.fem.size is not None,
     }
     return (f"{found.text}: " + next((why for why, applies in reasons.items() if applies), "none were asked for"),)
+
+
+def _larger_estimates(run: Run) -> str:
+    """Return of which errors, all within their bars, the methods' own estimates are not, as text; empty if none."""
+    larger = grouped(
+        (verdict.quantity, name)
+        for name, comparison in run.comparisons.items()
+        for verdict in comparison.verdicts
+        if verdict.outcome is Outcome.PASSED and verdict.bar is not None and (verdict.estimate or 0.0) > verdict.bar
+    )
+    if not larger:
+        return ""
+    what, whose = ("estimate", "its bar") if len(larger) == 1 else ("estimates", "their bars")
+    return f"; {what} of {', '.join(larger)} above {whose}"
 
 
 def effects(plan: Plan) -> list[tuple[str, str, str]]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from partialslip.output.svg import with_dark_mode
 from partialslip.report.answer import scale
+from partialslip.report.rows import setting
 from partialslip.scene import Scene
 from partialslip.scene.bodies import Body
 from partialslip.scene.profiles import FlatRounded
@@ -215,7 +216,8 @@ def _axes(scene: Scene) -> list[str]:
     data.append(f"f = {scene.friction.shown}")
     kinds = {"material": "other" if material.upper or material.lower else "both"}
     stiffness = [
-        f"{kinds.get(name) or name.removeprefix('material.')}: E = {scene.units.text(each.E, 'Pa', 4)}, ν = {each.nu:g}"
+        f"{kinds.get(name) or name.removeprefix('material.')}: "
+        f"E = {_values([each.E], 'Pa', scene.units)}, ν = {each.nu:g}"
         for name, each in material
     ]
     y = _LINE + _HALF_PLANE[1] + 58
@@ -230,14 +232,14 @@ def _axes(scene: Scene) -> list[str]:
 def _values(values: Sequence[float], of: Dimension, units: Units) -> str:
     """Return load points as text with one unit; more than three as a range."""
     exponent, unit = scale(max(map(abs, values)), of, units)
-    texts = [f"{each / 10.0**exponent:.4g}" for each in values]
+    texts = [setting(float(f"{each / 10.0**exponent:.4g}")) for each in values]
     low, high = (texts[values.index(each)] for each in (min(values), max(values)))
     return f"{f'{low} to {high}' if len(values) > 3 else ', '.join(texts)} {unit}"
 
 
 def _normal(values: Sequence[float], of: Dimension, units: Units) -> str:
     """Return a normal load as text, at the load points if it varies."""
-    return _values(values, of, units) if len(set(values)) > 1 else units.text(values[0], of, 4)
+    return _values(values if len(set(values)) > 1 else values[:1], of, units)
 
 
 def _column(texts: Sequence[str], way: float) -> list[str]:

@@ -28,7 +28,8 @@ class Plates(Short):
         nothing slips and the contact keeps its size.
     loop : (k, 2) array
         Displacement (m, from its value where the cycle begins) and Q (N/m) along the cycle, first and last point the
-        same. Between load steps it is straight: ``load.steps`` makes it finer.
+        same. That of mirror images under constant P has a point at each event; else it is straight between load steps:
+        ``load.steps`` makes it finer.
     error : float or None
         Estimated error of the compliance, relative; None on meshes as given. Elements of another order tell what those
         away from the contact's ends leave, and the next node and the error of the contact what the ends leave.
@@ -59,10 +60,20 @@ class Plates(Short):
     def stiffness(self) -> tuple[float, float]:
         """Forces along x and along y per displacement, N/m per m and unit depth (Pa), while nothing slips and the
         contact keeps its size; the other force does not change."""
-        return 1 / float(self.compliance[0, 0]), 1 / float(self.compliance[1, 1])
+        return stiffness(self.compliance)
 
     @property
     def work(self) -> float:
         """Area of the loop, J/m: the work of Q over a cycle, which friction consumes where no other load changes."""
-        moved, Q = self.loop.T
-        return float(((moved[1:] - moved[:-1]) * (Q[1:] + Q[:-1])).sum() / 2)
+        return work(self.loop)
+
+
+def stiffness(compliance: Array) -> tuple[float, float]:
+    """Return the stiffness along x and along y of plates with the ``compliance`` (2, 2)."""
+    return 1 / float(compliance[0, 0]), 1 / float(compliance[1, 1])
+
+
+def work(loop: Array) -> float:
+    """Return the area of a closed ``loop`` (k, 2) of displacement and force."""
+    moved, force = loop.T
+    return float(((moved[1:] - moved[:-1]) * (force[1:] + force[:-1])).sum() / 2)

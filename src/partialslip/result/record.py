@@ -8,6 +8,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.result.cost import Cost
+from partialslip.result.plates import stiffness, work
 from partialslip.result.result import EndSlip, Regime, Result
 from partialslip.shown import Short
 
@@ -58,6 +59,17 @@ class PlatesRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
     error: JsonNumber = None
     displacement_error: JsonNumber = None
     turn: Numbers | None = None
+
+    @property
+    def stiffness(self) -> tuple[JsonNumber, JsonNumber]:
+        """As :attr:`partialslip.result.Plates.stiffness`, Pa; None if it is not known."""
+        along, across = stiffness(np.array(self.compliance, float))
+        return number(along), number(across)
+
+    @property
+    def work(self) -> JsonNumber:
+        """As :attr:`partialslip.result.Plates.work`, J/m; None without the loop."""
+        return None if self.loop is None else number(work(np.array(self.loop, float)))
 
 
 class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):

@@ -1,10 +1,12 @@
-"""Dimensions of the numbers of a scene, and scenes as tables in other units."""
+"""Dimensions of the numbers of a scene, and scenes as tables and settings as text in other units."""
 
+import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from partialslip.units import Dimension
+from partialslip.units import SI, Dimension, Units
 
+_DIGITS = 10  # display: significant, of settings
 _BODIES = ("bodies.upper", "bodies.lower")
 _LENGTHS = ("width", "height", "pivot_height", "holder.width", "holder.height", "unit")
 _BODY: dict[str, Dimension] = {**dict.fromkeys(_LENGTHS, "m"), "right_grip": "1"}
@@ -67,3 +69,15 @@ def with_units(data: Mapping[str, Any], convert: Callable[[float, Dimension], fl
         return convert(value, of) if type(value) in (int, float) else value
 
     return {key: each(value, key) for key, value in data.items()}
+
+
+def shown(key: str, value: Any, units: Units = SI) -> str:
+    """Return the ``value``, in SI units, of a scene's dotted ``key`` as text in ``units``, with the unit."""
+    of = DIMENSIONS.get(key, "1")
+
+    def each(value: Any) -> str:
+        if isinstance(value, (list, tuple)):
+            return f"[{', '.join(map(each, value))}]"
+        return units.plain(value, of, _DIGITS) if isinstance(value, float) else json.dumps(value)
+
+    return f"{each(value)} {units.label(of)}".strip()

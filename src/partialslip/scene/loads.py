@@ -9,7 +9,9 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
+from partialslip.scene.dimensions import shown
 from partialslip.scene.table import ROUGH, Positive, Table
+from partialslip.units import SI, Units
 
 _FEW, _MOST = 2, 1000  # limit: least and largest number of load points
 _LISTS = ("Q", "displacement", "Q_found", "sigma", "sigma_slope", "P", "M", "e")
@@ -56,7 +58,7 @@ class Load(Table, frozen=True, kw_only=True):
                 raise InputError(f"load.{key} = {self.shown(key)}: must be given only with load.displacement")
         if self.displacement is not None and any(self.Q):
             raise InputError(
-                f"load.Q = {self.shown('Q')}: must be left out with load.displacement, from which it follows"
+                f"load.Q = {self.shown('Q')}: must be left out or [0, 0] with load.displacement, from which it follows"
             )
         lists = {key: len(getattr(self, key)) for key in _LISTS if self._matters(key)}
         for key, length in list(lists.items())[1:]:
@@ -64,9 +66,11 @@ class Load(Table, frozen=True, kw_only=True):
             if length != count:
                 raise InputError(f"load.{key}: must have as many numbers as load.{first}, {count}, not {length}")
 
-    def shown(self, key: str) -> str:
-        """Value of ``key`` in a message, as a scene file has it."""
+    def shown(self, key: str, units: Units | None = None) -> str:
+        """Value of ``key`` in a message, as a scene file has it; with ``units`` from SI in these, with the unit."""
         value = getattr(self, key)
+        if units:
+            return shown(f"load.{key}", value, units)
         return str(list(value) if isinstance(value, tuple) else value)
 
     def _matters(self, key: str) -> bool:
@@ -98,10 +102,10 @@ class Load(Table, frozen=True, kw_only=True):
         Q = self._at_points("Q") if self.Q_found is None else self.Q_found
         return tuple(zip(Q, self._at_points("sigma"), strict=True))
 
-    def require_forces(self) -> None:
-        """Raise InputError if displacements of plates are given in place of Q."""
+    def require_forces(self, units: Units = SI) -> None:
+        """Raise InputError, in ``units``, if displacements of plates are given in place of Q."""
         if self.displacement is not None:
-            given = self.shown("displacement")
+            given = self.shown("displacement", units)
             raise InputError(f"load.displacement = {given}: must be load.Q here; only runs with fem find Q")
 
     @property

@@ -220,7 +220,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"profile.x: must begin at 0 {purpose}; only even gaps{instead and '; '}{instead}")
         for key in ("M", "e", "sigma_slope"):
             if np.any(getattr(self.load, key) or 0.0):
-                raise InputError(f"load.{key} = {self.load.shown(key)}: must be 0 or left out {purpose}")
+                raise InputError(f"load.{key} = {self.load.shown(key, self.units)}: must be 0 or left out {purpose}")
 
     def require_no_moment(self, purpose: str) -> None:
         """Raise InputError if the bodies turn, which the ``purpose`` (in words) does not know: those of an uneven gap,

@@ -95,8 +95,22 @@ def score(
         found = centred(found, str(file), scene.units)
     result = scored(scene, found, name, str(file))
     outcome = run(scene, [reference], progress=progress)
-    seen = _read_as(scene, result, outcome.results[reference], wanted.bars if wanted else None)
+    known = outcome.results[reference]
+    seen = _read_as(scene, result, known, wanted.bars if wanted else None)
+    if seen.traction.q1 is None:
+        outcome.results[reference] = _of_the_change(known)
     return compared(scene, outcome.plan, outcome.results | {name: seen}, wanted)
+
+
+def _of_the_change(reference: Result) -> Result:
+    """The ``reference`` of a table without q1 and q2, which need not know them."""
+    unknown = {key: why for key, why in reference.undetermined.items() if key in ("q1", "q2")}
+    told = {f"q1 and q2: {why}" for why in unknown.values()}
+    return replace(
+        reference,
+        notes=tuple(note for note in reference.notes if note not in told),
+        undetermined={**reference.undetermined, **dict.fromkeys(unknown, "not needed, as only the change is scored")},
+    )
 
 
 def _read_as(scene: Scene, result: Result, reference: Result, bars: Mapping[str, float] | None = None) -> Result:

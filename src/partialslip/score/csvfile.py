@@ -9,6 +9,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.scene import Scene
 from partialslip.score.headers import COLUMN_DIMENSIONS, headings, known, selected
+from partialslip.score.samples import PLAUSIBLE, implausible
 from partialslip.units import SI, Units
 
 _NO_VALUE = ("", "-", "--", "novalue", "no value", "n/a", "na")
@@ -95,7 +96,8 @@ def read_csv(
         name: column * unit if (unit := wanted[name].unit) else units.to_si(column, COLUMN_DIMENSIONS[name])
         for name, column in sums.items()
     }
-    notes = [f"{len(rows) - len(kept)} rows without values were left out"] if len(kept) < len(rows) else []
+    left_out = len(rows) - len(kept)
+    notes = [f"left out: {left_out} row{'s' * (left_out > 1)} without values"] if left_out else []
     expressions = [f"{name} = {each.text}" for name, each in wanted.items() if each.text != name]
     return Columns(values, ", ".join(expressions), tuple(notes), any(each.moment for each in wanted.values()))
 
@@ -140,10 +142,14 @@ def csv_template(scene: Scene, a: float) -> str:
 
 def _numbers(values: list[str], lines: list[int], name: str, origin: str) -> Array:
     try:
-        return np.fromiter(map(float, values), float, len(values))
+        found = np.fromiter(map(float, values), float, len(values))
     except ValueError:
         line, value = next((n, v) for n, v in zip(lines, values, strict=True) if not _is_number(v))
         raise InputError(f"{origin}: line {line}: {name} = {value[:40]!r}: must be a number") from None
+    if (wrong := implausible(found)).any():
+        first = int(wrong.argmax())
+        raise InputError(f"{origin}: line {lines[first]}: {name} = {values[first][:40]}: must be {PLAUSIBLE}")
+    return found
 
 
 def _is_number(text: str) -> bool:

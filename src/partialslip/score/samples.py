@@ -5,13 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST
 from partialslip.score.headers import FIRST
 
 _DIGITS = 8  # accuracy: digits of x: numbers with fewer count as rounded
 _WHOLE = 1e-5  # accuracy: of a unit in the last place: deviation from a whole number of units
+PLAUSIBLE = f"zero or of a size from {SMALLEST} to {LARGEST}"
 FEWEST_POINTS = 6  # limit: points in contact that locate its ends
 
 
@@ -122,11 +123,14 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
 
 def _check(values: Array, names: list[str], origin: str) -> None:
     for name, column in zip(names, values, strict=True):
-        size = np.abs(column)
-        wrong = ~np.isfinite(column) | (size > LARGEST) | ((size > 0) & (size < SMALLEST))
-        if wrong.any():
-            value = column[wrong.argmax()]
-            raise InputError(f"{origin}: {name} = {value:g}: must be zero or of a size from {SMALLEST} to {LARGEST}")
+        if (wrong := implausible(column)).any():
+            raise InputError(f"{origin}: {name} = {column[wrong.argmax()]:g}: must be {PLAUSIBLE}")
+
+
+def implausible(values: Array) -> Mask:
+    """Where ``values`` are not finite, or of an implausible size."""
+    size = np.abs(values)
+    return ~np.isfinite(values) | (size > LARGEST) | ((size > 0) & (size < SMALLEST))
 
 
 def _resolution(x: Array) -> float:

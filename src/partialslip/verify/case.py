@@ -89,7 +89,7 @@ class Case:
         ``meshes(scene)``: given meshes for the finite elements (see :func:`partialslip_fem.method.solve_meshed`).
         There are then no usual bars.
     hard : str
-        Why the scene is hard, and how other codes fail.
+        Why the scene is hard, and how other codes may fail.
     """
 
     name: str

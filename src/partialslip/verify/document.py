@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 SCOPE = {
     "quick": "The shipped scenes: two half-planes of one material, pressed together and loaded by shear and bulk "
     "tension in phase. Each scene is solved by every method.",
-    "full": "The shipped scenes and the catalogue of hard cases: scenes on which contact codes fail. Each scene is "
+    "full": "The shipped scenes and the catalogue of hard cases: scenes on which contact codes may fail. Each scene is "
     "solved by the methods that it names.",
     "book": "The numbered problems of the benchmark. Each is solved by the methods that its targets come from.",
     "stress": "Random scenes of one method. Each can be made again from its number.",

@@ -1,18 +1,21 @@
 """Figures of a cost study, legible in black and white: error against CPU seconds, and CPU seconds by phase."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from partialslip.convergence import power
 from partialslip.output.svg import svg
-from partialslip.study.cost.ladder import CostPoint, by_series, errors_of, front
+from partialslip.study.cost.ladder import CostPoint, by_series, errors_of, front, slopes
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_USUAL = "P4, adapted"  # display: the series of the bars, if no other has more points
+_BARS = 4  # display: as many have room
 _MARKS = ("o", "s", "^", "v", "D", "<", ">", "p", "h", "X", "P", "*", "d")
 _GREYS = ("0.0", "0.45", "0.65")
 _LINES = ("-", "--", ":", "-.")
@@ -57,34 +60,63 @@ def errors_svg(points: Sequence[CostPoint], peers: Sequence[CostPoint], title: s
 
 
 def phases_svg(points: Sequence[CostPoint], title: str) -> str:
-    """Return CPU seconds of the finite elements by phase, and over the unknowns, as SVG; ``points`` as measured."""
-    found = sorted((point for point in points if point.series == "P4, adapted"), key=lambda point: point.counts["dofs"])
-    names = list(dict.fromkeys(name for point in found for name in point.phases))
+    """Return CPU seconds of the finite elements by phase, and over the unknowns, as SVG, as far as ``points``, as
+    measured, have them; empty without either."""
+    series = {name: found for name, found in by_series(points).items() if "dofs" in found[0].counts}
+    adapted = {name: found for name, found in series.items() if name.endswith("adapted")}
+    shown = max(adapted, key=lambda name: (len(adapted[name]), name == _USUAL), default="")
+    grown = {name: found for name, found in series.items() if len({point.counts["dofs"] for point in found}) > 1}
+    panels: list[Callable[[Any], None]] = []
+    if shown:
+        panels.append(lambda axes: _draw_shares(axes, adapted[shown], shown))
+    if grown:
+        panels.append(lambda axes: _draw_growth(axes, grown))
+    if not panels:
+        return ""
 
     def draw(figure: "Figure") -> None:
-        shares, growth = figure.subplots(1, 2)
-        place, bottom = np.arange(len(found)), np.zeros(len(found))
-        others = [point.process_s - sum(point.phases.values()) for point in found]
-        bars = {name: [point.phases.get(name, 0.0) for point in found] for name in names} | {"start, the rest": others}
-        for number, (name, seconds) in enumerate(bars.items()):
-            shares.bar(
-                place, seconds, bottom=bottom, label=name, color=str(0.95 - 0.08 * number), ec="black", lw=0.6,
-                hatch=_HATCHES[number % len(_HATCHES)], width=0.7,
-            )  # fmt: skip
-            bottom += seconds
-        shares.set_xticks(place, [f"{point.counts['dofs']:,}" for point in found], rotation=30)
-        shares.set(xlabel="unknowns of the last mesh (P4, adapted)", ylabel="CPU s of the process")
-        shares.legend(frameon=False, fontsize=8)
-        marks = cycle(_MARKS)
-        for number, (series, of) in enumerate(by_series(points).items()):
-            data = np.array([[point.counts["dofs"], point.cpu_s] for point in of if "dofs" in point.counts])
-            if len(data) > 1:
-                label = f"{series}: {power(*data.T):.2f}"
-                style = {"ls": _LINES[number % len(_LINES)], "color": _GREYS[number % len(_GREYS)], "mfc": "white"}
-                growth.loglog(*data.T, next(marks), ms=5, lw=1, label=label, **style)
-        growth.set(xlabel="unknowns of the last mesh", ylabel="CPU s of the method")
-        if growth.lines:  # none of the exact method alone
-            growth.legend(frameon=False, fontsize=8, title="series: exponent", title_fontsize=8)
+        for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False).flat, panels, strict=True):
+            panel(axes)
         figure.suptitle(title, x=0.01, ha="left", fontsize=10)
 
-    return svg(draw, (10.5, 4.4))
+    return svg(draw, (5.9 * len(panels), 4.4))
+
+
+def _draw_shares(axes: "Axes", points: Sequence[CostPoint], series: str) -> None:
+    """Draw CPU seconds by phase as bars, one for each of the ``points`` of a series."""
+    found = sorted(points, key=lambda point: point.counts["dofs"])
+    names = list(dict.fromkeys(name for point in found for name in point.phases))
+    place, bottom = np.arange(len(found)), np.zeros(len(found))
+    others = [point.process_s - sum(point.phases.values()) for point in found]
+    bars = {name: [point.phases.get(name, 0.0) for point in found] for name in names} | {"start, the rest": others}
+    for number, (name, seconds) in enumerate(bars.items()):
+        axes.bar(
+            place, seconds, bottom=bottom, label=name, color=str(0.95 - 0.08 * number), ec="black", lw=0.6,
+            hatch=_HATCHES[number % len(_HATCHES)], width=0.7,
+        )  # fmt: skip
+        bottom += seconds
+    axes.set_xlim(-0.8, max(len(found), _BARS) - 0.2)
+    axes.set_xticks(place, [f"{point.counts['dofs']:,}" for point in found], rotation=30)
+    axes.set(xlabel=f"unknowns of the last mesh ({series})", ylabel="CPU s of the process")
+    _put_legend(axes, reverse=True)  # as the bars are stacked
+
+
+def _draw_growth(axes: "Axes", series: Mapping[str, Sequence[CostPoint]]) -> None:
+    """Draw CPU seconds of the method over the unknowns, a line for each series."""
+    exponents, marks = slopes(point for points in series.values() for point in points), cycle(_MARKS)
+    for number, (name, points) in enumerate(series.items()):
+        data = np.array([[point.counts["dofs"], point.cpu_s] for point in points])
+        exponent = exponents[name]["CPU"]
+        style = {"ls": _LINES[number % len(_LINES)], "color": _GREYS[number % len(_GREYS)], "mfc": "white"}
+        label = name if math.isnan(exponent) else f"{name}: {exponent:.2f}"
+        axes.loglog(*data.T, next(marks), ms=5, lw=1, label=label, **style)
+    axes.set(xlabel="unknowns of the last mesh", ylabel="CPU s of the method")
+    _put_legend(axes, title="series: exponent")
+
+
+def _put_legend(axes: "Axes", **more: Any) -> None:
+    """Put the legend beside the panel, where nothing is drawn."""
+    axes.legend(
+        frameon=False, fontsize=8, title_fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.3,
+        **more,
+    )  # fmt: skip

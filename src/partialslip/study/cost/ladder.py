@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import zip_longest
 from pathlib import Path
 from statistics import median
 from typing import Any, NamedTuple
@@ -24,6 +23,7 @@ from partialslip.report import Record
 from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
 from partialslip.strictjson import decoded
+from partialslip.study.cost.spending import Spending
 
 SETTING = (
     "setting: accuracy asked of a, m and n, as a fraction of a (adapted meshes, march), or element size h (uniform "
@@ -39,6 +39,7 @@ _ADAPTED: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
     "P4, box": ({"order": 4, "far_field": "box"}, (1e-3, 1e-4, 1e-5, 1e-6)),
     "P4, SuperLU": ({"order": 4, "factor": "superlu"}, (1e-2, 1e-3, 1e-4, 2e-5, 1e-6, 1e-7)),
 }
+_SPAN = 1.5  # display: factor of the unknowns below which no exponent is told: meshes for two accuracies may be one
 _LARGEST_FILE = 100_000_000  # limit: bytes
 _UNIFORM = {"P1": 1, "P2": 2, "P4": 4}  # fixed: orders of the elements of uniform meshes
 _SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # display: of their elements, in a
@@ -91,31 +92,35 @@ LADDERS = ("exact", "march", "fem")  # fixed: methods with a ladder
 
 
 class MeasuredCosts(NamedTuple):
-    """What was measured: ``points``, and how many settings were ``left`` as the budget was spent."""
+    """What was measured: ``points``; the settings that were ``left`` out, of which the cheapest is predicted to take
+    ``least`` CPU seconds, more than the ``rest`` of the budget."""
 
     points: list[CostPoint]
-    left: int
+    left: list[Job]
+    least: float
+    rest: float
 
 
 class _Run(NamedTuple):
-    """One repeat of a setting: its job, the job's key, and the names of setting and series."""
+    """One repeat of a setting: its job, the job's key, and the name of the setting."""
 
     job: Job
     key: str
     name: str
-    series: str
-    repeat: int
 
     @classmethod
     def of(cls, case: Job, repeat: int) -> "_Run":
-        name = ", ".join(filter(None, map(str, case.labels.values())))
         job = replace(case, labels={**case.labels, "repeat": repeat})
-        return cls(job, job.key, name, str(case.labels["series"]), repeat)
+        return cls(job, job.key, setting_name(case))
+
+
+def setting_name(case: Job) -> str:
+    """Return series and setting of a job of the ladder as text."""
+    return ", ".join(filter(None, map(str, case.labels.values())))
 
 
 def ladder(scene: Scene, methods: Collection[str] = LADDERS) -> list[Job]:
-    """Return the jobs for all settings of ``scene`` by ``methods``, in the order in which a budget is spent: the
-    cheapest setting of each series, then the next of each.
+    """Return the jobs for all settings of ``scene`` by ``methods``, series by series, the cheapest of each first.
 
     Raises
     ------
@@ -135,8 +140,7 @@ def ladder(scene: Scene, methods: Collection[str] = LADDERS) -> list[Job]:
         sizes = _SIZES if order > 1 else (*_SIZES, 0.005)
         settings: list[_Setting] = [(f"h = {size:g} a", {"size": size}) for size in sizes]
         found.append(_series(scene, "fem", f"{name}, uniform", settings, {"order": order}))
-    wanted = [series for series in found if series[0].methods[-1] in methods]
-    return [case for rung in zip_longest(*wanted) for case in rung if case]
+    return [case for series in found for case in series if case.methods[-1] in methods]
 
 
 def _asked(accuracy: float) -> _Setting:
@@ -178,32 +182,45 @@ def measure_costs(
     methods : collection of str
         Of :data:`LADDERS`.
     budget : float
-        CPU seconds of all processes of a repeat, those in ``ledger`` included. A setting is left if the setting before
-        it in its series took more than the rest, and so are all later settings of the series.
+        CPU seconds of all processes of a repeat, those in ``ledger`` included. The first repeat runs from cheap to dear
+        over all series (:class:`partialslip.study.cost.spending.Spending`), until no setting is predicted to fit the
+        rest; the others repeat what it has run.
     """
     cases = ladder(scene, methods)
-    queue = [_Run.of(case, repeat) for repeat in range(repeats) for case in cases]
-    found, left, rest = list[Solved](), set[str](), budget
-    walls, last = dict[str, float](), dict[str, float]()  # seconds of settings, CPU seconds of the last one of a series
-    while queue:
-        run = queue[0]
-        if run.repeat == 0 and last.get(run.series, 0.0) > rest:
-            left.add(run.name)
-            queue = [each for each in queue if each.name not in left]
-            continue
+    runs = {setting_name(case): [_Run.of(case, repeat) for repeat in range(repeats)] for case in cases}
+    found, walls = list[Solved](), dict[str, float]()
+
+    def solve(ahead: Sequence[_Run], most: float) -> Solved:
+        """Solve the first of the runs ``ahead``, which may take ``most`` CPU seconds."""
         usual = float(np.mean([*walls.values()])) if walls else math.nan
-        ahead = sum(walls.get(each.name, usual) for each in queue if each.key not in ledger)
-        most = budget * (repeats - 1) + rest if run.repeat == 0 else budget * (repeats - run.repeat)
-        progress(len(found), len(found) + len(queue), run.name, min(ahead, most))
+        seconds = sum(walls.get(each.name, usual) for each in ahead if each.key not in ledger)
+        run = ahead[0]
+        progress(len(found), len(found) + len(ahead), run.name, min(seconds, most))
         if run.key not in ledger:
             ledger.add(run.key, solve_apart(run.job))
         found.append(ledger.read(run.key, Solved))
         if process := found[-1].process:
-            spent = process.cpu_s + process.report_cpu_s
-            walls[run.name], last[run.series], rest = process.wall_s, spent, rest - spent
-        queue = queue[1:]
+            walls[run.name] = process.wall_s
+        return found[-1]
+
+    spending, rest, chosen = Spending(cases), budget, list[str]()
+    while case := spending.following(rest):
+        name = setting_name(case)
+        once = [name, *(each for each in map(setting_name, spending.waiting) if each != name)]
+        again = [runs[each][repeat] for repeat in range(1, repeats) for each in (*chosen, *once)]
+        entry = solve([*(runs[each][0] for each in once), *again], rest + budget * (repeats - 1))
+        spent = entry.process.cpu_s + entry.process.report_cpu_s if entry.process else 0.0
+        of_method = _method(entry.run).cost.cpu_s if entry.run else spent
+        spending.ran(case, of_method, max(spent - of_method, 0.0))
+        chosen.append(name)
+        rest -= spent
+    for repeat in range(1, repeats):
+        for number in range(len(chosen)):
+            ahead = [runs[each][repeat] for each in chosen[number:]]
+            ahead += [runs[each][later] for later in range(repeat + 1, repeats) for each in chosen]
+            solve(ahead, budget * (repeats - repeat))
     progress(len(found), len(found), "", 0.0)
-    return MeasuredCosts(points(found), len(left))
+    return MeasuredCosts(points(found), spending.waiting, spending.least, rest)
 
 
 def points(entries: Iterable[Solved]) -> list[CostPoint]:
@@ -313,16 +330,19 @@ def by_series(points: Iterable[CostPoint]) -> dict[str, list[CostPoint]]:
 
 
 def slopes(points: Iterable[CostPoint]) -> dict[str, dict[str, float]]:
-    """Return exponents of the errors of m, n and q and of CPU seconds against unknowns, by series of finite elements
-    among ``points``."""
-    return {
-        series: {
-            "m, n": power(dofs := [point.counts["dofs"] for point in found], [point.ends for point in found]),
-            "q": power(dofs, [point.errors.get("q", np.nan) for point in found]),
-            "CPU": power(dofs, [point.cpu_s for point in found]),
+    """Return exponents of the errors of m and n, and q, and of CPU seconds against unknowns, by series of finite
+    elements among ``points``; NaN where the unknowns hardly differ."""
+    found = {}
+    for series, own in by_series(point for point in points if "dofs" in point.counts).items():
+        dofs = [point.counts["dofs"] for point in own]
+        data = {
+            "m, n": [point.ends for point in own],
+            "q": [point.errors.get("q", np.nan) for point in own],
+            "CPU": [point.cpu_s for point in own],
         }
-        for series, found in by_series(point for point in points if "dofs" in point.counts).items()
-    }
+        apart = max(dofs) >= _SPAN * min(dofs)
+        found[series] = {key: power(dofs, each) if apart else math.nan for key, each in data.items()}
+    return found
 
 
 def against(ours: Sequence[CostPoint], peer: Sequence[CostPoint], key: str) -> dict[str, float]:

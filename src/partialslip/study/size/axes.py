@@ -1,9 +1,10 @@
 """Axes of a sweep: parameters of a scene and their values, and the cases of the grid."""
 
+import difflib
 import itertools
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -19,8 +20,8 @@ from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.reading import parse_scene
 from partialslip.scene.writing import scene_tables
-from partialslip.study.size.case import COMPARED_METHODS
-from partialslip.units import Units
+from partialslip.study.size.case import compared_methods, half_plane_method
+from partialslip.units import Dimension, Units
 
 ACCURACY = "accuracy"  # label of a case besides the axes
 _COUNT = 9  # display: values of a range without a number of them
@@ -54,8 +55,16 @@ class Axis:
         """Name with the unit of the values."""
         if self.in_a:
             return f"{self.name} in contact half-widths"
+        return self.name if self._dimension == "1" else f"{self.name} in {units.label(self._dimension)}"
+
+    def heading(self, units: Units) -> str:
+        """Heading of a column of a CSV file, with the unit of the values in brackets unless SI."""
+        return f"{self.name} [a of the half-plane]" if self.in_a else units.heading(self.name, self._dimension)
+
+    @property
+    def _dimension(self) -> Dimension:
         found = {of for known, of in DIMENSIONS.items() if any(fnmatchcase(known, key) for key in self.keys)} - {"1"}
-        return f"{self.name} in {units.label(*found)}" if len(found) == 1 else self.name
+        return found.pop() if len(found) == 1 else "1"
 
 
 def axis(text: str) -> Axis:
@@ -78,6 +87,9 @@ def axis(text: str) -> Axis:
     ends = span.split("..") if ".." in span else span.split(",")
     found = [_NUMBER.fullmatch(value.strip()) for value in ends]
     if not all(found) or (".." in span and len(ends) != 2) or (count and ".." not in span):
+        for value, match in zip(ends, found, strict=True):
+            if value.strip() and not match and not _is_positive(value.strip().removesuffix("a")):
+                raise InputError(f"--over {keys}: {value.strip()!r}: must be a number > 0, such as 4 or 4a")
         raise InputError(f"--over {text}: values must be a list 4a,8a,16a or a range 4a..256a or 4a..256a:13")
     matches = [match for match in found if match]
     if len({match[2] for match in matches}) > 1:
@@ -99,6 +111,13 @@ def axis(text: str) -> Axis:
     return Axis(times, tuple(float(f"{number:.12g}") for number in numbers), bool(matches[0][2]))
 
 
+def _is_positive(text: str) -> bool:
+    try:
+        return 0 < float(text) < math.inf
+    except ValueError:
+        return False
+
+
 def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0,)) -> list[Job]:
     """Return the jobs of a sweep over the grid of ``axes``.
 
@@ -112,9 +131,13 @@ def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0
     Raises
     ------
     InputError
-        If a key is not in the scene, or a value is not allowed.
+        If a key is not in the scene, or a value is not allowed; or if Q is not given.
     """
-    a = scene.units.from_si(run(scene, ["exact"]).results["exact"].a, "m")
+    if scene.load.displacement is not None:
+        shown = ", ".join(scene.units.plain(each, "m") for each in scene.load.displacement)
+        why = "must be left out of a study of sizes, as half-planes have no plates; give load.Q"
+        raise InputError(f"load.displacement = [{shown}]: {why}")
+    a = _half_width(scene) if any(each.in_a for each in axes) else 1.0
     plain = scene_tables(scene)
     found = []
     for values in itertools.product(*(each.values for each in axes)):
@@ -128,8 +151,14 @@ def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0
             own["fem"]["accuracy"] = scene.fem.accuracy * accuracy
             point = parse_scene(own)
             labelled = {**labels, ACCURACY: accuracy}
-            found.append(Job(point, COMPARED_METHODS, labelled, asks_for_stresses(point)))
+            found.append(Job(point, compared_methods(point), labelled, asks_for_stresses(point)))
     return found
+
+
+def _half_width(scene: Scene) -> float:
+    """Contact half-width of the half-plane, in the scene's units."""
+    method = half_plane_method(scene)
+    return scene.units.from_si(run(scene, method)[method].a, "m")
 
 
 def _put(data: dict[str, Any], path: list[str], value: float, key: str) -> None:
@@ -137,11 +166,17 @@ def _put(data: dict[str, Any], path: list[str], value: float, key: str) -> None:
     head, *rest = path
     if not rest:
         if head not in data:
-            raise InputError(f"--over {key}: not in the scene")
+            raise InputError(f"--over {key}: not in the scene{_nearest(head, data)}")
         data[head] = int(value) if isinstance(data[head], int) and value == int(value) else value
         return
-    tables = [name for name, table in data.items() if fnmatchcase(name, head) and isinstance(table, dict)]
-    if not tables:
-        raise InputError(f"--over {key}: no table {head!r} in the scene")
-    for name in tables:
+    tables = [name for name, table in data.items() if isinstance(table, dict)]
+    named = [name for name in tables if fnmatchcase(name, head)]
+    if not named:
+        raise InputError(f"--over {key}: no table {head!r} in the scene{_nearest(head, tables)}")
+    for name in named:
         _put(data[name], rest, value, key)
+
+
+def _nearest(name: str, known: Iterable[str]) -> str:
+    near = difflib.get_close_matches(name, [*known], n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""

@@ -13,8 +13,18 @@ from partialslip.scene import Scene
 if TYPE_CHECKING:
     from partialslip_fem import Kept
 
-COMPARED_METHODS = ("exact", "equivalent", "fem")
 FEM, HALF_PLANE, EQUIVALENT = "fem", "half-plane", "equivalent"
+
+
+def half_plane_method(scene: Scene) -> str:
+    """Return the method that solves the half-planes of ``scene``: exact, or march where exact has no solution: for
+    unlike materials, and loads out of phase."""
+    return "exact" if scene.material.alike and scene.load.in_phase else "march"
+
+
+def compared_methods(scene: Scene) -> tuple[str, str, str]:
+    """Return the methods that a case of ``scene`` compares."""
+    return half_plane_method(scene), "equivalent", "fem"
 
 
 class Sized(Solved, frozen=True, kw_only=True):
@@ -34,12 +44,12 @@ class Sized(Solved, frozen=True, kw_only=True):
 
 
 def solve_sized(job: Job, keep: "Kept | None" = None) -> Sized:
-    """Solve ``job`` by the exact method and finite elements, and by equivalent half-planes where these exist; ``keep``
-    as in :func:`partialslip.run`."""
-    scene = job.scene
+    """Solve ``job`` as half-planes (:func:`half_plane_method`) and by finite elements, and by equivalent half-planes
+    where these exist; ``keep`` as in :func:`partialslip.run`."""
+    scene, method = job.scene, half_plane_method(job.scene)
     try:
-        whole = run(scene, ("exact", "fem"), subsurface=job.stresses, keep=keep)
-        found = {FEM: whole["fem"], HALF_PLANE: _with_stresses(scene, whole["exact"])} if job.stresses else {}
+        whole = run(scene, (method, "fem"), subsurface=job.stresses, keep=keep)
+        found = {FEM: whole["fem"], HALF_PLANE: _with_stresses(scene, whole[method])} if job.stresses else {}
         spots = {name: hot_spots(scene, result) for name, result in found.items()}
     except InputError as error:
         return Sized(labels=job.labels, error=str(error))
@@ -55,8 +65,9 @@ def solve_sized(job: Job, keep: "Kept | None" = None) -> Sized:
     return Sized(labels=job.labels, run=plain, stresses=spots, equivalent=record(against, curves=False))
 
 
-def _with_stresses(scene: Scene, exact: Result) -> Result:
-    """Return the half-planes of ``scene`` with stresses: by march where the ``exact`` method does not know them."""
-    if scene.slides or (exact.stress_at and not exact.path_dependent):
-        return exact
+def _with_stresses(scene: Scene, found: Result) -> Result:
+    """Return the half-planes of ``scene`` with stresses: by march where the exact method has ``found`` none. Of unlike
+    materials no method knows them."""
+    if found.method == "march" or scene.slides or (found.stress_at and not found.path_dependent):
+        return found
     return run(scene, "march", subsurface=True)["march"]

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
+from itertools import starmap
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,13 @@ from partialslip.batch.sweep import SweepProgress, work_through
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import SIGMA, off_by
 from partialslip.groups import grouped
+from partialslip.record import Record
+from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
 from partialslip.study.size.axes import ACCURACY, Axis, cases
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solve_sized
 from partialslip.study.size.law import CLEAR, Sizes
+from partialslip.units import Dimension, Units
 
 DIFFERENCES = ("a", "p0", "p", "m", "n", "q")
 _COARSER = 8.0  # accuracy: ratio of the accuracies of two successive meshes
@@ -142,15 +146,18 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
     """Return the differences at one point on the finest mesh, and the errors of the meshes, by half-planes.
 
     The error of the finite elements is the larger of the method's estimate and an eighth of the change by the last
-    refinement; NaN without either, as for a fixed element size. That of the rig adds to it.
+    refinement; NaN without either, as for a fixed element size. That of the rig, and that of half-planes that are not
+    solved exactly, add to it.
     """
-    found, estimate = _off(meshes[-1]), _estimate(meshes[-1])
-    estimate["p0"] = estimate.get("p", math.nan)
+    run = meshes[-1].run
+    assert run
+    found, estimate, beside = _off(meshes[-1]), _estimate(run.methods["fem"]), _estimate(_half_plane(run))
     coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
     rough = _off(coarser[-1]) if coarser else {}
     changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in DIFFERENCES}
     mesh = {key: float(np.fmax(estimate.get(key, math.nan), changed[key])) for key in DIFFERENCES}
-    differences = {HALF_PLANE: ({key: abs(found.get(key, math.nan)) for key in DIFFERENCES}, mesh)}
+    both = {key: mesh[key] + beside.get(key, 0.0) for key in DIFFERENCES}
+    differences = {HALF_PLANE: ({key: abs(found.get(key, math.nan)) for key in DIFFERENCES}, both)}
     if meshes[-1].equivalent:
         left, rig = _left(meshes[-1])
         both = {key: mesh[key] + rig.get(key, 0.0) for key in DIFFERENCES}
@@ -198,22 +205,27 @@ def _dofs(entry: Sized) -> int | None:
     return entry.run.methods["fem"].counts.get("dofs")
 
 
-def _estimate(entry: Sized) -> dict[str, float]:
-    """Return the error estimates of the finite elements by quantity."""
-    assert entry.run
-    return {key: error for key, error in entry.run.methods["fem"].estimate.items() if error is not None}
+def _estimate(result: ResultRecord) -> dict[str, float]:
+    """Return the error estimates of a ``result`` by quantity; that of p for p0."""
+    found = {key: error for key, error in result.estimate.items() if error is not None}
+    return found | ({"p0": found["p"]} if "p" in found else {})
 
 
 def _off(entry: Sized) -> dict[str, float]:
     """Return the change from the half-plane at one point on one mesh, by quantity."""
     assert entry.run
-    fem, exact, errors = entry.run.methods["fem"], entry.run.methods["exact"], entry.run.comparison["fem"].errors
-    a = exact.a or math.nan
-    found = {"a": (fem.a or math.nan) / a - 1, "p0": (fem.p_max or math.nan) / (exact.p_max or math.nan) - 1}
-    for key, end, true in (("m", fem.m, exact.m), ("n", fem.n, exact.n)):
+    fem, plain, errors = entry.run.methods["fem"], _half_plane(entry.run), entry.run.comparison["fem"].errors
+    a = plain.a or math.nan
+    found = {"a": (fem.a or math.nan) / a - 1, "p0": (fem.p_max or math.nan) / (plain.p_max or math.nan) - 1}
+    for key, end, true in (("m", fem.m, plain.m), ("n", fem.n, plain.n)):
         if end is not None and true is not None:
             found[key] = (end - true) / a
     return found | {key: error for key in ("p", "q") if (error := errors[key]) is not None}
+
+
+def _half_plane(run: Record) -> ResultRecord:
+    """Return the half-planes of a ``run``, by whichever method they were solved."""
+    return next(found for name, found in run.methods.items() if name != "fem")
 
 
 def _left(entry: Sized) -> tuple[dict[str, float], dict[str, float]]:
@@ -245,10 +257,10 @@ def grid(axes: Sequence[Axis], entries: Iterable[Sized], quantity: str) -> tuple
     return x, y, np.array([[points.get((first, second), math.nan) for first in x.tolist()] for second in y.tolist()])
 
 
-def case_table(axes: Sequence[Axis], entries: Iterable[Sized]) -> tuple[list[str], list[list[Any]]]:
-    """Return headings and rows for a CSV file, one row per case, from ``axes`` and ``entries``."""
-    figures = ("a", "p_max", "m", "n", "regime")
-    head = [*(each.name for each in axes), ACCURACY, *figures]
+def case_table(axes: Sequence[Axis], entries: Iterable[Sized], units: Units) -> tuple[list[str], list[list[Any]]]:
+    """Return headings and rows for a CSV file, one row per case, from ``axes`` and ``entries``, in ``units``."""
+    figures: dict[str, Dimension] = {"a": "m", "p_max": "Pa", "m": "m", "n": "m"}
+    head = [*(each.heading(units) for each in axes), ACCURACY, *starmap(units.heading, figures.items()), "regime"]
     head += [f"{name}: {key}" for name in (HALF_PLANE, EQUIVALENT) for key in DIFFERENCES]
     head += ["dofs", "cpu_s", "error", "no equivalent"]
     rows: list[list[Any]] = []
@@ -258,7 +270,9 @@ def case_table(axes: Sequence[Axis], entries: Iterable[Sized]) -> tuple[list[str
             rows.append([*row, *[""] * (len(head) - len(row) - 2), entry.error, ""])
         else:
             fem, differences = entry.run.methods["fem"], (_off(entry), _left(entry)[0])
-            row += [getattr(fem, key) for key in figures]
+            values = [(getattr(fem, key), of) for key, of in figures.items()]
+            row += ["" if value is None else units.from_si(value, of) for value, of in values]
+            row.append(fem.regime)
             row += [each.get(key, "") for each in differences for key in DIFFERENCES]
             rows.append([*row, fem.counts["dofs"], fem.cost.cpu_s, "", entry.refused])
     return head, rows

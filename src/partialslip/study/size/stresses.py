@@ -19,6 +19,7 @@ from partialslip.units import Dimension
 _SURFACE = "surface"
 _USUAL = "swt"  # display: the criterion of scenes that have no constants of a criterion
 _MODELS = (FEM, HALF_PLANE, EQUIVALENT)
+_UNLIKE = "stresses of the half-plane are not known: no method finds them in half-planes of unlike materials"
 NOT_ASKED = "no stresses: not asked for by a table fatigue; --set effects.subsurface=true tells the largest sigma_xx"
 
 
@@ -103,6 +104,8 @@ def in_short(study: SizeStudy) -> list[str]:
     sizes = study.models[0]
     keys = [key for key in stresses_of(study).quantities if "." not in key]
     lines = []
+    if not study.scene.material.alike and study.spots:
+        lines.append(_UNLIKE)
     for k, size in enumerate(sizes.size.tolist()):
         stresses, ends = _percents(sizes, keys, k, ""), _percents(sizes, ("m", "n"), k, " of a")
         if stresses:

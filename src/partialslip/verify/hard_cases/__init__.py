@@ -1,1 +1,1 @@
-"""Hard cases: scenes on which contact codes fail, with bars and reasons."""
+"""Hard cases: scenes on which contact codes may fail, with bars and reasons."""

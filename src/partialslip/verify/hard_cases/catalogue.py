@@ -1,4 +1,4 @@
-"""The catalogue of hard cases: scenes on which contact codes fail, reasons, and bars for each method.
+"""The catalogue of hard cases: scenes on which contact codes may fail, reasons, and bars for each method.
 
 Cases are grouped in families by what is hard: loads, load histories, bodies, meshes or rigs, a module each.
 """
@@ -13,8 +13,9 @@ from partialslip.verify.hard_cases.scenes import Family
 
 _HEAD = """# Hard cases
 
-These scenes are hard for contact codes. For each family of scenes this page gives the reason and the requirements. The
-reasons are those of mechanics and of earlier editions of partialslip; no other code was run on these scenes.
+We expect these scenes to be hard for contact codes. For each family this page gives the reasons and the requirements.
+The reasons are those of mechanics and of earlier versions of partialslip; no other code was run on these scenes: what
+the page says of codes is what may happen.
 `partialslip verify --suite full` runs all scenes after the shipped scenes, and `partialslip verify --suite full --only
 NAME` runs one scene. The methods in brackets solve the scene. [The last section](#loads-and-what-was-measured) has the
 loads of every case, and errors and cost of every method.
@@ -22,9 +23,9 @@ loads of every case, and errors and cost of every method.
 Unless an entry has other bars, every result must meet these requirements:
 
 - The result is finite and certified.
-- The regime is that of the exact solution.
-- The ends of the contact and of the stick zone are within the accuracy of the scene (2e-5 of a), however narrow the
-  zone is.
+- The regime is that of the reference.
+- The ends of the contact and of the stick zone are within the accuracy of the scene (2e-5 of a; the last section
+  lists the cases with another one), however narrow the zone is.
 - Pressure is within ten times and shear within fifteen times this accuracy (relative L2 of cell averages)."""
 
 

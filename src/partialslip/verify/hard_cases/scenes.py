@@ -22,7 +22,7 @@ class Family:
     ----------
     title : str
     hard : str
-        Why the cases are hard, and how other codes fail.
+        Why the cases are hard, and how other codes may fail.
     make : callable
         Makes the cases.
     """

@@ -1,0 +1,64 @@
+"""Estimated errors of fatigue criteria: by how much they change if the stresses change by their own errors."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.arrays import Array
+from partialslip.fatigue.criteria import Criterion
+from partialslip.result import Result
+from partialslip.result.peak import peak_error
+
+# accuracy: error of stresses at the surface in the difference at the ends of the contact (_edge_error): up to 2.5 in 59
+# solutions of fem
+_SURFACE = 3.0
+# accuracy: error of averaged stresses in the error of the stresses at the ends of the contact: up to 0.52 in 57
+# such solutions of fem
+_AVERAGED = 0.6
+
+
+class Errors(NamedTuple):
+    """Relative errors at the ``surface``, and ``below`` it: of averages and inside the body."""
+
+    surface: float
+    below: float
+
+
+def stress_errors(result: Result, body: str) -> Errors | None:
+    """Return the errors of the stresses of a ``body``; None for the upper one, where the ``result`` has no estimate of
+    them, and where it does not claim to hold."""
+    error = peak_error(result)
+    if error is None or body != "lower" or result.path_dependent or result.surface is None:
+        return None
+    share, edge = error / (abs(result.surface.largest[1]) or 1.0), _edge_error(result)
+    return Errors(share + _SURFACE * edge, share + _AVERAGED * edge)
+
+
+def criterion_errors(of: Criterion, stress: Array, change: float, errors: Errors | None) -> Errors | None:
+    """Return the errors of a criterion for the ``errors`` of the ``stress`` path (s, 4) of its point, and its own
+    ``change`` over load points around the cycle, NaN if that is not known."""
+    if errors is None:
+        return None
+    beside = 0.0 if np.isnan(change) else change
+    return Errors(*(_changed_by(of, stress, share) + beside for share in errors))
+
+
+def _changed_by(of: Criterion, stress: Array, share: float) -> float:
+    """Relative change of a criterion if the ``stress`` path grows by ``share``."""
+    now, then = (float(of.at(factor * stress).value) for factor in (1.0, 1.0 + share))
+    return abs(then / now - 1) if now else share
+
+
+def _edge_error(result: Result) -> float:
+    """Relative error of the stresses at the ends of the contact.
+
+    Tractions end like square roots. Their Cauchy integrals, from which criteria are found, are less accurate there than
+    the strain of the surface beyond the ends: the difference is the error.
+    """
+    assert result.surface
+    assert result.stress_at
+    ends, sigma = np.array(result.ends), result.surface.sigma[0]
+    at = np.abs(result.surface.x[:, None] - ends.ravel()).argmin(axis=0).reshape(ends.shape)
+    integrals = result.stress_at(result.surface.x[at], np.zeros(ends.shape))[:, 0]  # by load point, then both ends
+    apart = [np.abs(integrals[k, k] - sigma[k, at[k]]).max() for k in range(len(ends))]
+    return float(max(apart) / np.abs(sigma).max())

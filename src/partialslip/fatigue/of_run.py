@@ -1,0 +1,47 @@
+"""Hot spots in the report of a run: the largest stress, and the criteria that the scene asks for."""
+
+from partialslip.errors import InputError
+from partialslip.fatigue.spots import SIGMA, HotSpot, hot_spots
+from partialslip.report.answer import scale, with_error
+from partialslip.report.page import Section
+from partialslip.report.rows import HALF_PLANES
+from partialslip.result import Result
+from partialslip.run import Run
+from partialslip.scene import Fatigue
+
+_TITLE = "Fatigue criteria"
+_HEADINGS = ("lower body", "unit", "value", "x/a", "x, mm")
+
+
+def of_run(run: Run) -> list[Section]:
+    """Return the section of hot spots of ``run``: of the answering result, or the first other that holds and knows its
+    stresses. Empty without a table ``fatigue`` in the scene, and without such a result."""
+    if run.scene.fatigue == Fatigue() or not (result := _known(run)):
+        return []
+    try:
+        found = hot_spots(run.scene, result)
+    except InputError as error:
+        return [Section(_TITLE, [f"Not known: {error}."])]
+    distance = run.scene.fatigue.distance
+    averages = f" Averages are over {run.scene.units.length(distance)} from the surface." if distance else ""
+    line = f"By {result.method}.{averages} partialslip fatigue has the critical planes and figures."
+    rows = [
+        _row(run, result, key, spot, found.get(key.partition(".")[0], spot).value)  # the surface has the largest
+        for key, spot in found.items()
+    ]
+    return [Section(_TITLE, [line], headings=_HEADINGS, rows=rows, words=(1,))]
+
+
+def _known(run: Run) -> Result | None:
+    names = dict.fromkeys([run.answering, *run.results])
+    holds = (name for name in names if not (run.scene.finite and name in HALF_PLANES))
+    return next((run[name] for name in holds if run[name].stress_at and not run[name].path_dependent), None)
+
+
+def _row(run: Run, result: Result, key: str, spot: HotSpot, largest: float) -> tuple[str, ...]:
+    """Cells of a hot spot, in the unit of the ``largest`` of its criterion."""
+    name, _, over = key.partition(".")
+    text = f"{name}, largest" if key == SIGMA else f"{name}, {f'averaged, {over}' if over else 'at the surface'}"
+    exponent, unit = scale(largest, spot.of, run.scene.units)
+    error = float("nan") if spot.error is None else spot.error * spot.value
+    return text, unit, with_error(spot.value, error, exponent), f"{spot.x / result.a:.4f}", f"{spot.x * 1e3:.4g}"
