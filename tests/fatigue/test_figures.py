@@ -31,12 +31,14 @@ def sheet_of(monkeypatch):
 
         def draw_on(draw, size):
             sheets.append(Figure(figsize=size, layout="constrained"))
-            draw(sheets[0])
+            finish = draw(sheets[0])
+            sheets[0].draw_without_rendering()
+            if finish:
+                finish()
             return ""
 
         monkeypatch.setattr(figures, "svg", draw_on)
         figure_of(found)
-        sheets[0].draw_without_rendering()
         return sheets[0]
 
     return drawn
@@ -46,7 +48,7 @@ def test_labels_of_contours_keep_off_the_contact_and_keep_their_sign(scene, resu
     """A label on the contact line, or with a minus that is a dash of its line, cannot be read."""
     sheet = sheet_of(figures.stress_svg, assess(scene, result, ["swt"]))
     labels = [(axes, text) for axes in sheet.axes for text in axes.texts]
-    assert len(labels) > 40
+    assert len(labels) > 25  # every second contour has one
     for axes, text in labels:
         _, y = axes.transData.inverted().transform(axes.transAxes.transform(text.get_position()))
         assert abs(y) > 0.1

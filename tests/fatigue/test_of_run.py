@@ -5,7 +5,7 @@ import pytest
 import partialslip
 from partialslip.cli import main
 from partialslip.fatigue import hot_spots
-from partialslip.fatigue.of_run import of_run
+from partialslip.fatigue.of_run import criteria_sections
 
 ASKED = ["fatigue.distance=2e-5"]
 
@@ -13,7 +13,7 @@ ASKED = ["fatigue.distance=2e-5"]
 def test_a_scene_that_asks_for_criteria_gets_them():
     scene = partialslip.load_scene("fretting-aluminium", ASKED)
     run = partialslip.run(scene, "exact", stresses=True)
-    (section,) = of_run(run)
+    (section,) = criteria_sections(run)
     shown = {row[0]: (row[1], float(row[2].split()[0])) for row in section.rows}
     spots = hot_spots(scene, run["exact"])
     assert shown["sigma_xx, largest"] == ("MPa", pytest.approx(spots["sigma_xx"].value / 1e6, rel=1e-6))
@@ -24,9 +24,9 @@ def test_a_scene_that_asks_for_criteria_gets_them():
 
 def test_other_scenes_and_runs_without_stresses_have_none():
     plain = partialslip.load_scene("fretting-aluminium")
-    assert of_run(partialslip.run(plain, "exact", stresses=True)) == []
+    assert criteria_sections(partialslip.run(plain, "exact", stresses=True)) == []
     sliding = partialslip.load_scene("fretting-aluminium", [*ASKED, "load.Q=[-1e5, 1e5]"])
-    assert of_run(partialslip.run(sliding, "exact")) == []
+    assert criteria_sections(partialslip.run(sliding, "exact")) == []
 
 
 def test_the_report_of_the_command_has_them(tmp_path):

@@ -49,7 +49,7 @@ def test_half_planes_beside_half_planes_have_errors():
     run = ran(march=result("march"))
     assert rows.error_headings(run, "march")[2:5] == ["exact", "march", "error"]
     assert rows.error_title(run, "march") == "Errors of march"
-    assert not rows.half_planes(ran(SCENE))
+    assert not rows.shown_half_planes(ran(SCENE))
 
 
 def test_equivalent_half_planes_beside_fem_have_errors():

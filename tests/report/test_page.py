@@ -154,8 +154,12 @@ def test_a_study_has_the_same_frame():
 
 def test_a_narrow_figure_of_a_study_stays_narrow():
     """Stretched over a page, its text would be twice as large."""
+
+    def draw(figure):
+        figure.subplots()
+
     for width, kind in ((300, "<figure class=narrow>"), (600, "<figure>")):
-        figure = svg(lambda figure: figure.subplots(), (width / 72, 2.0))
+        figure = svg(draw, (width / 72, 2.0))
         assert kind in study_page("study of it", SCENE, MADE, [Section("Errors", [], figure)]).partition("<h2>Scene")[0]
 
 

@@ -105,7 +105,7 @@ def print_long_path(scene: "Scene", methods: Sequence[str]) -> None:
 
 
 @contextmanager
-def of_scene(scene: str) -> Iterator[None]:
+def naming(scene: str) -> Iterator[None]:
     """Let messages about bad input in the block begin with the ``scene`` as the user gave it."""
     try:
         yield

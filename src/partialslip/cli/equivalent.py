@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import Commands, add_out, add_scene, check_output, of_scene
+from partialslip.cli.common import Commands, add_out, add_scene, check_output, naming
 from partialslip.cli.findings import Findings, present
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def _equivalent(options: argparse.Namespace) -> int:
     from partialslip.run import rig_of
     from partialslip.scene.writing import scene_toml
 
-    with working(scene.name) as tell, of_scene(options.scene):
+    with working(scene.name) as tell, naming(options.scene):
         rig = rig_of(scene)
         found = stand_ins(scene, rig, tell)
     named = found.scene.replace(name=f"{scene.name}-half-planes", title=f"Half-planes that act like {scene.name}"[:200])

@@ -83,7 +83,7 @@ def _run(options: argparse.Namespace) -> int:
     budget = _budget(options, scene, methods)
 
     from partialslip.cli.consoles import messages, working
-    from partialslip.fatigue.of_run import of_run
+    from partialslip.fatigue.of_run import criteria_sections
     from partialslip.output.files import write_files
     from partialslip.report import write_run
     from partialslip.run import default_methods
@@ -128,7 +128,9 @@ def _run(options: argparse.Namespace) -> int:
                 save = Path(options.save)
                 files += write_files(save.parent, {save.name: _state(outcome).save})
             if folder:
-                files += write_run(outcome, folder, origin(options), pdf=options.pdf, sections=of_run(outcome))
+                files += write_run(
+                    outcome, folder, origin(options), pdf=options.pdf, sections=criteria_sections(outcome)
+                )
     paid = _paid(price, budget, outcome, began) if price else []
     return print_outcome(outcome, options, files, paid, elsewhere)
 

@@ -17,30 +17,32 @@ _SURFACE = 3.0
 _AVERAGED = 0.6
 
 
-class Errors(NamedTuple):
+class CriterionErrors(NamedTuple):
     """Relative errors at the ``surface``, and ``below`` it: of averages and inside the body."""
 
     surface: float
     below: float
 
 
-def stress_errors(result: Result, body: str) -> Errors | None:
+def errors_of_stresses(result: Result, body: str) -> CriterionErrors | None:
     """Return the errors of the stresses of a ``body``; None for the upper one, where the ``result`` has no estimate of
     them, and where it does not claim to hold."""
     error = peak_error(result)
     if error is None or body != "lower" or result.path_dependent or result.surface is None:
         return None
     share, edge = error / (abs(result.surface.largest[1]) or 1.0), _edge_error(result)
-    return Errors(share + _SURFACE * edge, share + _AVERAGED * edge)
+    return CriterionErrors(share + _SURFACE * edge, share + _AVERAGED * edge)
 
 
-def criterion_errors(of: Criterion, stress: Array, change: float, errors: Errors | None) -> Errors | None:
+def criterion_errors(
+    of: Criterion, stress: Array, change: float, errors: CriterionErrors | None
+) -> CriterionErrors | None:
     """Return the errors of a criterion for the ``errors`` of the ``stress`` path (s, 4) of its point, and its own
     ``change`` over load points around the cycle, NaN if that is not known."""
     if errors is None:
         return None
     beside = 0.0 if np.isnan(change) else change
-    return Errors(*(_changed_by(of, stress, share) + beside for share in errors))
+    return CriterionErrors(*(_changed_by(of, stress, share) + beside for share in errors))
 
 
 def _changed_by(of: Criterion, stress: Array, share: float) -> float:

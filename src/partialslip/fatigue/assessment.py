@@ -8,7 +8,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.fatigue.accuracy import Errors, criterion_errors, stress_errors
+from partialslip.fatigue.accuracy import CriterionErrors, criterion_errors, errors_of_stresses
 from partialslip.fatigue.criteria import RUIZ, Criterion, beyond, check_distance, chosen, criterion
 from partialslip.fatigue.critical_plane import Ruiz, ruiz
 from partialslip.fatigue.cycle import settled_criteria, stress_path, unknown_between
@@ -68,7 +68,7 @@ class Rating:
     peak: Spot
     averages: Mapping[str, Spot]
     change: float
-    errors: Errors | None = None
+    errors: CriterionErrors | None = None
 
 
 @dataclass(frozen=True, eq=False)  # arrays do not compare
@@ -183,7 +183,7 @@ def assess(
     unknown = unknown_between(result)
     path = partial(stress_path, scene, result, body)
     phases, changes = settled_criteria(scene.load, found, lambda phases: path(phases, x, np.zeros(1)), not unknown)
-    at, errors = partial(path, phases), stress_errors(result, body)
+    at, errors = partial(path, phases), errors_of_stresses(result, body)
     grid = depths(result.a)
     stress = at(x[:, None], grid)
     ratings = {
@@ -219,7 +219,7 @@ def _rated(
     known: tuple[Array, Array, Array],
     distance: float | None,
     change: float,
-    errors: Errors | None,
+    errors: CriterionErrors | None,
 ) -> Rating:
     """What a criterion finds, with stress paths ``known`` on a grid: x (k,), depth (l,), and stress (s, 4, k, l); and
     with the relative ``errors`` of the stresses."""

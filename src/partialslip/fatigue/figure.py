@@ -1,5 +1,7 @@
 """Figures of an assessment, readable in black and white: stress fields, criteria, and planes."""
 
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import cycle
 from typing import TYPE_CHECKING
 
@@ -39,7 +41,7 @@ def stress_svg(found: Assessment) -> str:
     largest = max(float(np.nanmax(np.abs(field))) for _, field in fields)
     exponent, unit = scale(largest, "Pa", found.scene.units)
 
-    def draw(figure: "Figure") -> None:
+    def draw(figure: "Figure") -> Callable[[], None]:
         grid = figure.subplots(3, 2, sharex=True, sharey=True)
         drawn: list[tuple[Axes, list[tuple[float, Array]]]] = []
         for component, row in enumerate(grid):
@@ -54,7 +56,7 @@ def stress_svg(found: Assessment) -> str:
                     values = np.ma.masked_invalid(field[point, component] / 10.0**exponent)
                     filled = axes.contourf(x / a, y / a, values, levels, cmap="Greys_r", extend="both")
                     edges = axes.contour(x / a, y / a, values, levels, colors="black", linewidths=0.5)
-                    by_level = zip(edges.levels, edges.allsegs, strict=True)
+                    by_level = [*zip(edges.levels, edges.allsegs, strict=True)][::2]
                     lines += [(at, line) for at, some in by_level for line in some if len(line)]
                 _outline(axes, found)
                 axes.set(xlim=(x[0] / a, x[-1] / a), ylim=(-_DEEP, _DEEP), aspect="equal")
@@ -64,13 +66,16 @@ def stress_svg(found: Assessment) -> str:
             figure.colorbar(filled, ax=row, aspect=12, pad=0.02).ax.tick_params(labelsize=7)
         for axes in grid[-1]:
             axes.set_xlabel("x/a")
-        figure.draw_without_rendering()  # label_lines needs the final size of the axes
-        surface = np.column_stack([x / a, 0 * x])
-        for axes, lines in drawn:
-            texts = [f"{at:g}".replace("-", "\N{MINUS SIGN}") for at, _ in lines]
-            label_lines(axes, [line for _, line in lines], texts, surface, _CROSSING, _LABELS, _MARGIN)
+        return partial(_label, drawn, np.column_stack([x / a, 0 * x]))
 
     return svg(draw, (8.6, 8.0))
+
+
+def _label(drawn: Sequence[tuple["Axes", Sequence[tuple[float, Array]]]], surface: Array) -> None:
+    """Label contours by axes, level and points (k, 2), off the points of the ``surface`` (k, 2)."""
+    for axes, lines in drawn:
+        texts = [f"{at:g}".replace("-", "\N{MINUS SIGN}") for at, _ in lines]
+        label_lines(axes, [line for _, line in lines], texts, surface, _CROSSING, _LABELS, _MARGIN)
 
 
 def _round_levels(low: float, high: float) -> Array:

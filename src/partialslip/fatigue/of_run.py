@@ -13,7 +13,7 @@ _TITLE = "Fatigue criteria"
 _HEADINGS = ("lower body", "unit", "value", "x/a", "x, mm")
 
 
-def of_run(run: Run) -> list[Section]:
+def criteria_sections(run: Run) -> list[Section]:
     """Return the section of hot spots of ``run``: of the answering result, or the first other that holds and knows its
     stresses. Empty without a table ``fatigue`` in the scene, and without such a result."""
     if run.scene.fatigue == Fatigue() or not (result := _known(run)):

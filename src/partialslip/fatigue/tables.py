@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.fatigue.accuracy import Errors
+from partialslip.fatigue.accuracy import CriterionErrors
 from partialslip.fatigue.assessment import Assessment, Rating, Spot, rough_points
 from partialslip.fatigue.cycle import dense, stress_path
 from partialslip.fatigue.edges import Coefficient
@@ -19,7 +19,7 @@ from partialslip.report.answer import answer_heading, answers, scale, with_error
 from partialslip.run import Run
 from partialslip.units import SI, Dimension
 
-Table = tuple[Sequence[str], Sequence[Sequence[str]]]
+HeadedRows = tuple[Sequence[str], Sequence[Sequence[str]]]
 _SAME = 1e-9  # display: relative change that is none
 _PLACE = 5  # display: significant digits of a place
 _CURVE = 48  # display: intervals of curves between points where stresses may have cusps, and of depth
@@ -42,7 +42,7 @@ def assessment_answer(found: Assessment) -> str:
     return "; ".join([answer_heading(run), *(f"{key} {told[key]}" for key in ("m, n", "a") if key in told)])
 
 
-def rating_table(found: Assessment) -> Table:
+def rating_table(found: Assessment) -> HeadedRows:
     """Return headings and rows of the largest values along the surface and, where these are larger, in the body, with
     their errors and places; angles of the normal of the critical plane, degrees."""
     a = found.result.a
@@ -69,7 +69,7 @@ def rating_table(found: Assessment) -> Table:
     return ("criterion", "unit", "surface", "x/a", f"x, {unit}", "angle", "tilt", *inside), rows
 
 
-def average_table(found: Assessment) -> Table:
+def average_table(found: Assessment) -> HeadedRows:
     """Return headings and rows of the criteria of averaged stresses, with their errors; no rows without distance."""
     rows = [
         (name, unit, *(number(rating.averages[over], False) for over in OVER))
@@ -87,14 +87,16 @@ def _each(found: Assessment) -> Iterator[tuple[str, Rating, str, Callable[[Spot,
         if rating.criterion.of != "1":
             exponent, unit = scale(abs(rating.surface.value), rating.criterion.of, found.scene.units)
 
-        def number(spot: Spot, surface: bool, errors: Errors | None = rating.errors, exponent: int = exponent) -> str:
+        def number(
+            spot: Spot, surface: bool, errors: CriterionErrors | None = rating.errors, exponent: int = exponent
+        ) -> str:
             share = math.nan if errors is None else errors.surface if surface else errors.below
             return with_error(spot.value, share * abs(spot.value), exponent)
 
         yield name, rating, unit, number
 
 
-def edge_table(found: Assessment) -> Table:
+def edge_table(found: Assessment) -> HeadedRows:
     """Return headings and rows of the ends of the contact, in the units that :func:`edge_units` tells; without what is
     not known at either end."""
     a, root = found.result.a, math.sqrt(found.scene.units.size("m"))

@@ -1,6 +1,7 @@
 """Figures of the stick-zone map, legible in black and white: m/a solid, n/a dashed."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +24,7 @@ _STRIP = 0.025  # display: width of the strip of sliding beyond dQ = 2 f P
 def map_svg(data: StickMap) -> str:
     """Return the map ``data`` as SVG: lines of equal m/a and n/a over dQ/(2 f P) and dsigma/(f p0)."""
 
-    def draw(figure: "Figure") -> None:
+    def draw(figure: "Figure") -> Callable[[], None]:
         axes = figure.subplots()
         axes.set(xlabel="ΔQ/(2 f P)", ylabel="Δσ/(f p0)", xlim=(0, 1 + _STRIP), ylim=(0, data.grid.sf.max()))
         axes.plot([], color="black", lw=1, label="m/a, stick from -m")
@@ -42,9 +43,9 @@ def map_svg(data: StickMap) -> str:
         axes.tick_params(pad=9)  # room for the mark of a scene without dQ or dsigma, on an axis
         axes.set_title(data.scene.name if data.scene else "hertz", loc="left", fontsize=10)
         figure.legend(loc="outside lower left", ncols=2, frameon=False, fontsize=9)
-        figure.draw_without_rendering()  # label_lines needs the final size of the axes
         found = (("m", data.m_lines), ("n", data.n_lines))
-        draw_lines(axes, ((of, at, np.column_stack([Qf, sf])) for of, lines in found for at, Qf, sf in lines), avoided)
+        lines = [(of, at, np.column_stack([Qf, sf])) for of, some in found for at, Qf, sf in some]
+        return partial(draw_lines, axes, lines, avoided)
 
     return svg(draw, _SIZE)
 

@@ -1,6 +1,6 @@
 """Figure of the map over dP and dQ, legible in black and white: m/a solid, n/a dashed, regions by hatching and grey."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,7 +27,7 @@ def varying_svg(data: VaryingMap) -> str:
     """Return the map ``data`` as SVG: what the ends of the contact do over dP/P and dQ/(f P), and lines of equal m/a
     and n/a where both slip."""
 
-    def draw(figure: "Figure") -> None:
+    def draw(figure: "Figure") -> Callable[[], None]:
         axes, dP = figure.subplots(), data.P_change[0]
         sticks, slides = data.sticks(dP), data.slides(dP)
         top = (1 + _STRIP) * float(slides.max())
@@ -54,8 +54,7 @@ def varying_svg(data: VaryingMap) -> str:
             mark_point(axes, data.point)
             avoided = np.vstack([avoided, data.point.place])
         figure.legend(loc="outside lower left", ncols=2, frameon=False, fontsize=9)
-        figure.draw_without_rendering()  # label_lines needs the final size of the axes
-        draw_lines(axes, _all_lines(axes, data), avoided, _CROSSING)
+        return lambda: draw_lines(axes, _all_lines(axes, data), avoided, _CROSSING)
 
     return svg(draw, _SIZE)
 

@@ -21,7 +21,11 @@ _INK, _PAPER = (0xE6, 0xE6, 0xE6), (0x13, 0x14, 0x16)  # display: black and whit
 _SHADE = re.compile(r"#([0-9a-f]{2})\1\1\b")
 
 
-def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)) -> str:
+#: Draws on a figure; returns what finishes it where it is laid out and axes have their size, or None.
+Draw = Callable[["Figure"], Callable[[], None] | None]
+
+
+def svg(draw: Draw, size: tuple[float, float] = (7.4, 4.4)) -> str:
     """Return a figure as SVG text, drawn by ``draw(figure)``, of ``size`` (width, height) in inches."""
     from matplotlib import rc_context
     from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -31,12 +35,16 @@ def svg(draw: Callable[["Figure"], None], size: tuple[float, float] = (7.4, 4.4)
     with rc_context(_STYLE):
         layout = ConstrainedLayoutEngine()
         figure = Figure(figsize=size, layout=layout)
-        draw(figure)
+        finish = draw(figure)
         # laid out here, as savefig would draw everything once more to do so, at the 72 dots per inch of SVG
         FigureCanvasSVG(figure)
         figure.dpi = 72
         layout.execute(figure)
         figure.set_layout_engine("none")
+        if finish:
+            for axes in figure.axes:
+                axes.apply_aspect()
+            finish()
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata=dict.fromkeys(("Date", "Creator", "Format", "Type")))
     return with_dark_mode(text.getvalue())

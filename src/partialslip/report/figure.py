@@ -10,7 +10,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.methods import METHODS
 from partialslip.output.svg import svg
-from partialslip.report.rows import half_planes
+from partialslip.report.rows import shown_half_planes
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Friction, Scene, Tabulated
@@ -190,7 +190,7 @@ def draw_errors(axes: "Axes", run: Run) -> None:
             _draw_error(axes, x, a, q, ends, color="black", ls=line, label=f"q, {label}")
     from matplotlib.ticker import LogLocator, NullLocator
 
-    what = "difference" if half_planes(run) else "error"
+    what = "difference" if shown_half_planes(run) else "error"
     axes.set(yscale="log", xlabel="x/a", ylabel=f"{what}, in p0 and f p0", xlim=_limits(shown))
     # few ticks and plain text: small ticks and formulas take longer to lay out than all lines together
     axes.yaxis.set_major_locator(LogLocator(numticks=6))

@@ -52,7 +52,7 @@ def beside_half_planes(run: Run, name: str) -> bool:
     return run.scene.finite and run.reference in HALF_PLANES and name not in HALF_PLANES
 
 
-def half_planes(run: Run) -> bool:
+def shown_half_planes(run: Run) -> bool:
     """Return whether any method of ``run`` stands :func:`beside_half_planes`."""
     return any(beside_half_planes(run, name) for name in run.comparisons)
 

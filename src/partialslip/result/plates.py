@@ -65,7 +65,7 @@ class Plates(Short):
     @property
     def work(self) -> float:
         """Area of the loop, J/m: the work of Q over a cycle, which friction consumes where no other load changes."""
-        return work(self.loop)
+        return loop_area(self.loop)
 
 
 def stiffness(compliance: Array) -> tuple[float, float]:
@@ -73,7 +73,7 @@ def stiffness(compliance: Array) -> tuple[float, float]:
     return 1 / float(compliance[0, 0]), 1 / float(compliance[1, 1])
 
 
-def work(loop: Array) -> float:
+def loop_area(loop: Array) -> float:
     """Return the area of a closed ``loop`` (k, 2) of displacement and force."""
     moved, force = loop.T
     return float(((moved[1:] - moved[:-1]) * (force[1:] + force[:-1])).sum() / 2)

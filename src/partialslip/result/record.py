@@ -8,7 +8,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.result.cost import Cost
-from partialslip.result.plates import stiffness, work
+from partialslip.result.plates import loop_area, stiffness
 from partialslip.result.result import EndSlip, Regime, Result
 from partialslip.shown import Short
 
@@ -69,7 +69,7 @@ class PlatesRecord(Short, msgspec.Struct, frozen=True, omit_defaults=True):
     @property
     def work(self) -> JsonNumber:
         """As :attr:`partialslip.result.Plates.work`, J/m; None without the loop."""
-        return None if self.loop is None else number(work(np.array(self.loop, float)))
+        return None if self.loop is None else number(loop_area(np.array(self.loop, float)))
 
 
 class ResultRecord(Short, msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):

@@ -9,7 +9,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.scene import Scene
 from partialslip.score.headers import COLUMN_DIMENSIONS, headings, known, selected
-from partialslip.score.samples import PLAUSIBLE, implausible
+from partialslip.score.samples import PLAUSIBLE, unusable
 from partialslip.units import SI, Units
 
 _NO_VALUE = ("", "-", "--", "novalue", "no value", "n/a", "na")
@@ -146,7 +146,7 @@ def _numbers(values: list[str], lines: list[int], name: str, origin: str) -> Arr
     except ValueError:
         line, value = next((n, v) for n, v in zip(lines, values, strict=True) if not _is_number(v))
         raise InputError(f"{origin}: line {line}: {name} = {value[:40]!r}: must be a number") from None
-    if (wrong := implausible(found)).any():
+    if (wrong := unusable(found)).any():
         first = int(wrong.argmax())
         raise InputError(f"{origin}: line {lines[first]}: {name} = {values[first][:40]}: must be {PLAUSIBLE}")
     return found

@@ -123,11 +123,11 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
 
 def _check(values: Array, names: list[str], origin: str) -> None:
     for name, column in zip(names, values, strict=True):
-        if (wrong := implausible(column)).any():
+        if (wrong := unusable(column)).any():
             raise InputError(f"{origin}: {name} = {column[wrong.argmax()]:g}: must be {PLAUSIBLE}")
 
 
-def implausible(values: Array) -> Mask:
+def unusable(values: Array) -> Mask:
     """Where ``values`` are not finite, or of an implausible size."""
     size = np.abs(values)
     return ~np.isfinite(values) | (size > LARGEST) | ((size > 0) & (size < SMALLEST))
