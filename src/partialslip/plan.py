@@ -55,9 +55,10 @@ class Plan:
     @property
     def with_stresses(self) -> "Plan":
         """The plan with fields inside the bodies."""
-        called_for: dict[Effect, str] = {"subsurface": _FIELDS}
-        left_out: dict[Effect, str] = {effect: why for effect, why in self.left_out.items() if effect != "subsurface"}
-        return Plan(self.called_for | called_for, left_out, self.missing) if left_out != self.left_out else self
+        if self.needs("subsurface"):
+            return self
+        called_for: dict[Effect, str] = {**self.called_for, "subsurface": _FIELDS}
+        return Plan(called_for, {key: why for key, why in self.left_out.items() if key != "subsurface"}, self.missing)
 
     def accept(self, regime: str) -> None:
         """Raise InputError if the ``regime`` of a result requires an effect that is forced off."""

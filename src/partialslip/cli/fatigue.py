@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import partialslip
-from partialslip.cli.common import Commands, add_method, add_out, add_pdf, add_scene, check_output
+from partialslip.cli.common import Commands, add_method, add_out, add_pdf, add_scene, check_output, naming
 from partialslip.cli.findings import Findings, present
 from partialslip.errors import InputError
 from partialslip.methods import REFERENCES
@@ -59,12 +59,10 @@ def _fatigue(options: argparse.Namespace) -> int:
     from partialslip.run import solved_with_stresses
 
     names = None if options.criterion is None else [name.strip() for name in options.criterion.split(",")]
-    try:
+    with naming(options.scene):
         names = chosen(scene, names)  # before anything is solved
         check_distance(scene, options.body)
         _check_method(scene, options.method)
-    except InputError as error:
-        raise InputError(f"{options.scene}: {error}") from None
     name = f"{scene.name}-fatigue"
     known = {"criterion": names, "distance": None}  # the distance is in the scene
 

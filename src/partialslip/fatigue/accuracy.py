@@ -42,13 +42,9 @@ def criterion_errors(
     if errors is None:
         return None
     beside = 0.0 if np.isnan(change) else change
-    return CriterionErrors(*(_changed_by(of, stress, share) + beside for share in errors))
-
-
-def _changed_by(of: Criterion, stress: Array, share: float) -> float:
-    """Relative change of a criterion if the ``stress`` path grows by ``share``."""
-    now, then = (float(of.at(factor * stress).value) for factor in (1.0, 1.0 + share))
-    return abs(then / now - 1) if now else share
+    now, *grown = (float(of.at((1.0 + share) * stress).value) for share in (0.0, *errors))
+    changed = (abs(then / now - 1) if now else share for then, share in zip(grown, errors, strict=True))
+    return CriterionErrors(*(each + beside for each in changed))
 
 
 def _edge_error(result: Result) -> float:

@@ -59,7 +59,7 @@ class Rating:
     change : float
         Relative change of the largest value at the surface over half as many load points around the cycle; NaN if
         they were not doubled.
-    errors : Errors or None
+    errors : CriterionErrors or None
         Estimated relative errors at the surface, and of averages and inside the body; None if they are not known.
     """
 

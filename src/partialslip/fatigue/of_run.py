@@ -2,15 +2,15 @@
 
 from partialslip.errors import InputError
 from partialslip.fatigue.spots import SIGMA, HotSpot, hot_spots
-from partialslip.report.answer import scale, with_error
+from partialslip.fatigue.tables import unit_of_places
+from partialslip.report.answer import HALF_PLANES, scale, with_error
 from partialslip.report.page import Section
-from partialslip.report.rows import HALF_PLANES
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Fatigue
 
 _TITLE = "Fatigue criteria"
-_HEADINGS = ("lower body", "unit", "value", "x/a", "x, mm")
+_HEADINGS = ("lower body", "unit", "value", "x/a")
 
 
 def criteria_sections(run: Run) -> list[Section]:
@@ -25,11 +25,12 @@ def criteria_sections(run: Run) -> list[Section]:
     distance = run.scene.fatigue.distance
     averages = f" Averages are over {run.scene.units.length(distance)} from the surface." if distance else ""
     line = f"By {result.method}.{averages} partialslip fatigue has the critical planes and figures."
+    exponent, unit = unit_of_places(run.scene, result.a)
     rows = [
-        _row(run, result, key, spot, found.get(key.partition(".")[0], spot).value)  # the surface has the largest
+        (*_row(run, result, key, spot, found.get(key.partition(".")[0], spot).value), f"{spot.x / 10.0**exponent:.4g}")
         for key, spot in found.items()
     ]
-    return [Section(_TITLE, [line], headings=_HEADINGS, rows=rows, words=(1,))]
+    return [Section(_TITLE, [line], headings=(*_HEADINGS, f"x, {unit}"), rows=rows, words=(1,))]
 
 
 def _known(run: Run) -> Result | None:
@@ -39,9 +40,10 @@ def _known(run: Run) -> Result | None:
 
 
 def _row(run: Run, result: Result, key: str, spot: HotSpot, largest: float) -> tuple[str, ...]:
-    """Cells of a hot spot, in the unit of the ``largest`` of its criterion."""
+    """Cells of a hot spot but for its place in a unit of length, in the unit of the ``largest`` of its criterion, which
+    stands at the surface."""
     name, _, over = key.partition(".")
     text = f"{name}, largest" if key == SIGMA else f"{name}, {f'averaged, {over}' if over else 'at the surface'}"
     exponent, unit = scale(largest, spot.of, run.scene.units)
     error = float("nan") if spot.error is None else spot.error * spot.value
-    return text, unit, with_error(spot.value, error, exponent), f"{spot.x / result.a:.4f}", f"{spot.x * 1e3:.4g}"
+    return text, unit, with_error(spot.value, error, exponent), f"{spot.x / result.a:.4f}"

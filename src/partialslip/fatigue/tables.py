@@ -17,6 +17,7 @@ from partialslip.output.files import csv_text
 from partialslip.plan import plan
 from partialslip.report.answer import answer_heading, answers, scale, with_error
 from partialslip.run import Run
+from partialslip.scene import Scene
 from partialslip.units import SI, Dimension
 
 HeadedRows = tuple[Sequence[str], Sequence[Sequence[str]]]
@@ -46,7 +47,7 @@ def rating_table(found: Assessment) -> HeadedRows:
     """Return headings and rows of the largest values along the surface and, where these are larger, in the body, with
     their errors and places; angles of the normal of the critical plane, degrees."""
     a = found.result.a
-    exponent, unit = _length(found)
+    exponent, unit = unit_of_places(found.scene, found.result.a)
     deeper = any(rating.peak != rating.surface for rating in found.ratings.values())
     inside = ("largest", "x/a", f"x, {unit}", "depth/a") if deeper else ()
 
@@ -130,7 +131,7 @@ def assessment_notes(found: Assessment) -> list[str]:
     """Return Ruiz's parameters, why errors are not known, and remarks, also of the method, as lines."""
     lines, result = [], found.result
     if found.ruiz:
-        text, (exponent, unit) = found.scene.units.labelled, _length(found)
+        text, (exponent, unit) = found.scene.units.labelled, unit_of_places(found.scene, found.result.a)
         first, second = (
             f"x = {x / result.a:.4f} a, {x / 10.0**exponent:.{_PLACE}g} {unit}" for x in (found.ruiz.x1, found.ruiz.x2)
         )
@@ -211,9 +212,10 @@ def _degrees(angle: float) -> str:
     return "" if math.isnan(angle) else f"{round(math.degrees(angle), 1) + 0.0:.1f}"
 
 
-def _length(found: Assessment) -> tuple[int, str]:
-    """Exponent of ten and label of the unit of places: mm in SI, where that is near."""
-    a, units = found.result.a, found.scene.units
+def unit_of_places(scene: Scene, a: float) -> tuple[int, str]:
+    """Exponent of ten and label of the unit of places in contacts of half-width ``a`` (m): mm in SI, where that is
+    near."""
+    units = scene.units
     return (-3, "mm") if units == SI and 1e-6 <= a < 1 else scale(a, "m", units)
 
 

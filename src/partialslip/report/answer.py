@@ -65,6 +65,7 @@ def _digits(value: float | None, exponent: int) -> str:
 
 _ROUNDING = 1e-9  # display: of a
 _ROUGH = 4  # display: significant, of values whose error is not estimated
+HALF_PLANES = ("exact", "march")  # methods that know no finite bodies
 _EXACT = ("exact", "march")  # what these do not estimate (march: the pressure) they know to rounding
 
 
@@ -233,7 +234,7 @@ def _first(run: Run, knows: Callable[[Result], bool]) -> _Known | None:
     none does. Half-planes do not hold for finite bodies."""
     best, finite = run.answering, run.scene.finite
     others = [
-        name for name, result in run.results.items() if not (result.path_dependent or (finite and name in _EXACT))
+        name for name, result in run.results.items() if not (result.path_dependent or (finite and name in HALF_PLANES))
     ]
     for name in dict.fromkeys([best, *others]):
         if knows(run.results[name]):

@@ -9,6 +9,7 @@ import numpy as np
 from partialslip.groups import grouped
 from partialslip.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
 from partialslip.plan import Plan
+from partialslip.report.answer import HALF_PLANES
 from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.scene import Scene
@@ -39,7 +40,6 @@ _MEANING = {
     for key, text in {"left": "left end", "right": "right end", "P": "P", "M": "M", "p": "p"}.items()
     for point in (1, 2)
 }  # fmt: skip
-HALF_PLANES = ("exact", "march")  # methods that know no finite bodies
 _IN_A = ("fem.accuracy", "fem.size", "fem.width")  # settings in contact half-widths
 _WORDS = {Outcome.PASSED: "ok", Outcome.MISSED: "MISSED", Outcome.NOT_JUDGED: "not judged"}
 _EVEN = 1e-4  # display: of a: a contact whose middle is nearer to x = 0 is even, to the error of elements

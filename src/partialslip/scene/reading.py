@@ -379,7 +379,12 @@ def _shown(value: Any) -> str:
 
 
 def _nearest(key: str, known: Iterable[str]) -> str:
+    names = [*known]
+    return meant(key, names) or f"; known are {', '.join(names)}"
+
+
+def meant(key: str, known: Iterable[str]) -> str:
+    """Return, for the end of a message, which of the ``known`` keys was meant by ``key``; empty if none is near."""
     by_lower = {name.lower(): name for name in known}
-    if near := difflib.get_close_matches(key[:60].lower(), by_lower, n=1, cutoff=0.6):
-        return f"; did you mean {by_lower[near[0]]!r}?"
-    return f"; known are {', '.join(by_lower.values())}"
+    near = difflib.get_close_matches(key[:60].lower(), by_lower, n=1, cutoff=0.6)
+    return f"; did you mean {by_lower[near[0]]!r}?" if near else ""

@@ -1,10 +1,9 @@
 """Axes of a sweep: parameters of a scene and their values, and the cases of the grid."""
 
-import difflib
 import itertools
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -18,7 +17,7 @@ from partialslip.plan import asks_for_stresses
 from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
-from partialslip.scene.reading import parse_scene
+from partialslip.scene.reading import meant, parse_scene
 from partialslip.scene.writing import scene_tables
 from partialslip.study.size.case import compared_methods, half_plane_method
 from partialslip.units import Dimension, Units
@@ -166,17 +165,12 @@ def _put(data: dict[str, Any], path: list[str], value: float, key: str) -> None:
     head, *rest = path
     if not rest:
         if head not in data:
-            raise InputError(f"--over {key}: not in the scene{_nearest(head, data)}")
+            raise InputError(f"--over {key}: not in the scene{meant(head, data)}")
         data[head] = int(value) if isinstance(data[head], int) and value == int(value) else value
         return
     tables = [name for name, table in data.items() if isinstance(table, dict)]
     named = [name for name in tables if fnmatchcase(name, head)]
     if not named:
-        raise InputError(f"--over {key}: no table {head!r} in the scene{_nearest(head, tables)}")
+        raise InputError(f"--over {key}: no table {head!r} in the scene{meant(head, tables)}")
     for name in named:
         _put(data[name], rest, value, key)
-
-
-def _nearest(name: str, known: Iterable[str]) -> str:
-    near = difflib.get_close_matches(name, [*known], n=1)
-    return f"; did you mean {near[0]!r}?" if near else ""

@@ -21,7 +21,7 @@ _MARKS = {
     PointStatus.FEW: "x",
     PointStatus.NO_LAW: "n",
 }
-STANDING_IN = "half-planes"  # heading of the names of models
+_BY = "half-planes"  # heading of the names of models
 _LISTED = 3  # display: largest number of sizes that are listed
 _MEANINGS = {
     Kind.MEASURED: "measured: a solved size, where the difference is the level within the mesh's error",
@@ -128,14 +128,14 @@ def laws_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
         for *of, trend in _by_quantity(study)
         if (law := trend.law)
     ]
-    return ("C size^-k", STANDING_IN, "C", "k", "95 %", "fitted sizes"), rows
+    return ("C size^-k", _BY, "C", "k", "95 %", "fitted sizes"), rows
 
 
 def needed_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
     """Return headings and rows of the sizes from which on the difference is below each level, and how they are
     known."""
     rows = [(*of, *map(str, trend.needed)) for *of, trend in _by_quantity(study)]
-    return ("below", STANDING_IN, *(f"{100 * level:g} %" for level in LEVELS)), rows
+    return ("below", _BY, *(f"{100 * level:g} %" for level in LEVELS)), rows
 
 
 def _by_quantity(study: SizeStudy) -> list[tuple[str, str, Trend]]:
@@ -176,7 +176,7 @@ def points_csv(study: SizeStudy) -> str:
         for k, size in enumerate(model.size.tolist())
     ]  # fmt: skip
     rows += [("", size, "", "", "", error) for size, error in study.models[0].failed.items()]
-    return csv_text((STANDING_IN, "size", "quantity", "difference", "error of the mesh", "point"), rows)
+    return csv_text((_BY, "size", "quantity", "difference", "error of the mesh", "point"), rows)
 
 
 def laws_csv(study: SizeStudy) -> str:
@@ -195,7 +195,7 @@ def laws_csv(study: SizeStudy) -> str:
         for trend in model.trends
         for needed in trend.needed
     ]
-    head = (STANDING_IN, "quantity", "C", "k", "k low", "k high", "difference below", "kind", "size", "low", "high")
+    head = (_BY, "quantity", "C", "k", "k low", "k high", "difference below", "kind", "size", "low", "high")
     return csv_text(head, rows)
 
 
