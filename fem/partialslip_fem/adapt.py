@@ -17,7 +17,7 @@ from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
 from partialslip_fem.goals import Goal, NextMesh, OutlineErrors, course, gaps, size_reached, worst
-from partialslip_fem.mesh_cost import Expense, work_again
+from partialslip_fem.mesh_cost import Expense, MeshSize, march_in_more_steps
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.plates import compliance_error
 from partialslip_fem.problem import ScaledProblem
@@ -115,8 +115,8 @@ class _Refinement:
         self.problem, self.clock = problem, clock
         self.expense = Expense(clock, len(problem.parts))
         self.solution, self.meshes, self.factored = solve_on_first_mesh(problem, width, clock, keep, alone=True)
-        self.expense.measure(self.solution.dofs, self.solution.choosing_s)
         self.march_s = 0.0  # CPU seconds of contact and friction on the present mesh, once
+        self.expense.measure(self.solution, clock.phases["contact"] if self.meshes == 1 else 0.0)
         self.best: Adapted | None = None
         self.lowered = False  # whether the goal is less than the accuracy of the scene
         self.iterations = self.solution.iterations
@@ -206,7 +206,7 @@ class _Refinement:
             least = goal.growth * (self.least / self.goal.growth if problem.order == self.problem.order else 1.0)
             size = goal.element_size(self.solution, problem)
             finer = 1.0 if size_reached(self.size, size) else self.finer
-            if self._affords(problem, course(self.size, finer, size, least, problem.order)):
+            if self._affords(goal, problem, course(self.size, finer, size, least, problem.order)):
                 self.problem, self.goal, self.least, self.finer = problem, goal, least, finer
                 self.error_before = np.inf
                 return True
@@ -248,20 +248,19 @@ class _Refinement:
             arrives = size_reached(self.size, self.size_goal)
             self.outline = OutlineErrors.at(self.goal.accuracy, problem, None if arrives else ahead[0])
         coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
-        grading = self._grading(problem.order, self.growth, coarsest)
+        planned = NextMesh(self.size, self.growth, self.finer)
+        grading = self._grading(self.goal, problem.order, planned)
         self.eased = grading.eased is not None
         self.width = widened(self.asked_width, self.solution)
         self.block_width = self.width * a
-        expected = None
-        if self.expense.limited:
-            expected = self.expense.unknowns(grading, problem.order, self.block_width)
+        expected = self._size(self.goal, problem, planned) if self.expense.limited else None
         began = self.clock.phases["contact"]
         choose = self.step_errors is None and not self.path_errors and self.size <= goals.COARSEST
         self.solution = solving.mesh_and_solve(
             problem, self.block_width, grading, self.clock, None, choose, self.solution
         )
         self.march_s = self.clock.phases["contact"] - began - self.solution.choosing_s
-        self.expense.measure(self.solution.dofs, self.solution.choosing_s, expected)
+        self.expense.measure(self.solution, self.march_s, expected, choose)
         if choose:
             self._keep_steps()
             self._refine_steps()
@@ -328,19 +327,24 @@ class _Refinement:
         if self.error < np.inf:
             self.error_before, self.least = self.error, self.least * self.calmer
 
-    def _grading(self, order: int, growth: float, coarsest: float) -> Grading:
-        """Grading to the zone ends of the present solution, to the profile's kinks, and to kinks of q1 and q2."""
+    def _grading(self, goal: Goal, order: int, mesh: NextMesh, filled: bool = True) -> Grading:
+        """Grading of the next ``mesh``, with elements of ``order``, on the way to ``goal``: to the zone ends of the
+        present solution, to the profile's kinks, and to kinks of q1 and q2; unless it is ``filled``, without the
+        intervals that the ends of the contact sweep."""
         solution, a = self.solution, self.solution.half_width
-        margin = (0.1 + 2 * self.finer * self.size) * a  # for safety, and for the error of the present ends
+        coarsest = max(part.fineness for part in self.problem.parts)  # sizes are those of the coarsest body
+        margin = (0.1 + 2 * mesh.finer * mesh.size) * a  # for safety, and for the error of the present ends
         leftmost, rightmost = solution.reach
         contact = (max(leftmost - margin, -self.limit), min(rightmost + margin, self.limit))
         kinks = [kink for kink in self.problem.kinks if contact[0] < kink < contact[1]]  # others are not in contact
-        points = apart([*solution.zone_ends.tolist(), *kinks], self.size * a)
-        sizes = dict.fromkeys(points, self.size * a / coarsest)
-        at_kinks = np.clip(estimate.kink_sizes(solution, self.goal.end_error * BARS["q1"]), self.size, None)
-        goal, eased = self.goal, goals.eased(solution, self.problem, order, growth)
+        points = apart([*solution.zone_ends.tolist(), *kinks], mesh.size * a)
+        sizes = dict.fromkeys(points, mesh.size * a / coarsest)
+        at_kinks = np.clip(estimate.kink_sizes(solution, goal.end_error * BARS["q1"]), mesh.size, None)
+        eased = goals.eased(solution, self.problem, order, mesh.growth)
         outline = self.outline
-        grading = Grading(contact, sizes, growth / coarsest, None, outline.facet_error, outline.corner_error, eased)
+        grading = Grading(
+            contact, sizes, mesh.growth / coarsest, None, outline.facet_error, outline.corner_error, eased
+        )
 
         def refine(point: float, size: float, slack: float = 1.0) -> None:
             """Elements of the ``size``, in half-widths, at a ``point`` where they are larger than ``slack`` times."""
@@ -352,9 +356,8 @@ class _Refinement:
             refine(kink, needed, _KINK_SLACK)
         for kink in solution.passing:
             refine(kink, goals.PASSING * math.sqrt(goal.accuracy), _KINK_SLACK)
-        for low, high in solution.swept:
-            # where surfaces that stick come into contact, what is locked in depends on the distance of the nodes
-            size = (high - low) * goals.swept_size(goal.accuracy) / coarsest
+        for low, high, wanted in self._swept(goal) if filled else ():
+            size = wanted / coarsest
             count = int(np.ceil((high - low) / (2 * size * coarsest)))
             sizes |= {
                 point: size for point in np.linspace(low, high, count + 2)[1:-1].tolist() if size > sizes[points[0]]
@@ -365,22 +368,28 @@ class _Refinement:
                 refine(point, _OF_HALF)
         if (first := self.problem.touches_first) is not None:
             refine(first, _AT_FIRST * goal.accuracy, _FIRST_SLACK)
-        sizes |= self._at_kinks_of_friction(grading, contact, coarsest)
+        sizes |= self._at_kinks_of_friction(goal, grading, contact, coarsest)
         # two vertices far nearer to each other than elements are wide make an element without an area
         kept = apart(sorted(sizes, key=lambda point: sizes[point]), _MERGED * min(sizes.values()))
         for point in set(sizes).difference(kept):
             del sizes[point]
         return grading
 
+    def _swept(self, goal: Goal) -> list[tuple[float, float, float]]:
+        """Intervals in which surfaces that stick come into contact, and the element size there: what is locked in
+        depends on the distance of the nodes."""
+        share = goals.swept_size(goal.accuracy)
+        return [(low, high, (high - low) * share) for low, high in self.solution.swept]
+
     def _at_kinks_of_friction(
-        self, grading: Grading, contact: tuple[float, float], coarsest: float
+        self, goal: Goal, grading: Grading, contact: tuple[float, float], coarsest: float
     ) -> dict[float, float]:
         """Element sizes at kinks of the coefficient of friction that leave an error within an element. A vertex there
         suffices, and elements are hardly larger than the distance of two kinks."""
         a, (places, jumps) = self.solution.half_width, self.problem.friction_kinks
         inside = (places > contact[0]) & (places < contact[1])
         size = grading.at(places) * coarsest / a
-        inside &= jumps * a * size**2 > self.goal.accuracy
+        inside &= jumps * a * size**2 > goal.accuracy
         kept, sizes = places[inside], size[inside] * a
         apart = np.diff(kept, prepend=-np.inf, append=np.inf)
         sizes = np.minimum(sizes, np.minimum(apart[1:], apart[:-1]))
@@ -402,10 +411,9 @@ class _Refinement:
             if not more or not self._allows_marches(more.substeps / path.substeps):
                 return
             self.problem = replace(self.problem, path=more)
-            once = self.march_s
             self.solution = self._solved_again()
             self.iterations += before.iterations
-            self.expense.add(self.march_s - once)
+            self.expense.march(self.solution, self.march_s)
 
     def _solved_again(self) -> MeshSolution:
         """Solve contact and friction once more on the present mesh, and check the load steps."""
@@ -417,7 +425,9 @@ class _Refinement:
     def _allows_marches(self, times: float) -> bool:
         """Whether the allowance suffices to follow the load path in so many ``times`` as many steps as on the present
         mesh, and to check these steps."""
-        return self.expense.allows(_CHECKED * times * self.march_s, self._overdraft)
+        coupled = self.solution.coupled and self.solution.history
+        work = march_in_more_steps(self.solution, times) if coupled else _CHECKED * times
+        return self.expense.allows(work * self.march_s, self._overdraft)
 
     def _errors_of_ends(self, at_ends: Array, inside: Array, at_kinks: Array) -> dict[str, float]:
         """Errors due to elements of given sizes at ends, ``inside`` which these lie, and at kinks, to round faces and
@@ -443,8 +453,8 @@ class _Refinement:
         """The best goal, none beyond the present one, that the rest of the allowance suffices for.
 
         None if the present solution, with its errors estimated, is about as good. As long as the goal is the accuracy
-        of the scene, the rest need suffice only for the next mesh with small elements, and only nearly: the course is a
-        cautious one, and that mesh may be the last.
+        of the scene, the rest need suffice only for the next mesh with small elements (after the first mesh only for
+        the second), and only nearly: the course is a cautious one, and that mesh may be the last.
         """
         solution, problem = self.solution, self.problem
         order = problem.order
@@ -456,25 +466,29 @@ class _Refinement:
             size_goal = best.element_size(solution, problem)
             finer = self.finer if best is self.goal or not size_reached(self.size, size_goal) else 1.0
             meshes = course(self.size, finer, size_goal, self.least * best.growth / self.goal.growth, order)
-            if done and best is not self.goal and self._unknowns(problem, meshes[-1]) < _WORTH * solution.dofs:
+            if (
+                done
+                and best is not self.goal
+                and self._size(best, problem, meshes[-1]).unknowns < _WORTH * solution.dofs
+            ):
                 return None
             if best is self.goal and not (self.lowered or self.best):
-                meshes = meshes[: 1 + sum(mesh.size > goals.COARSEST for mesh in meshes)]
-                if self._affords(problem, meshes, self._overdraft):
+                fine = 1 + sum(mesh.size > goals.COARSEST for mesh in meshes)
+                meshes = meshes[: fine if self.end_errors else 1]  # what the first mesh tells is rough
+                if self._affords(best, problem, meshes, self._overdraft):
                     return best
-            elif self._affords(problem, meshes):
+            elif self._affords(best, problem, meshes):
                 return best
         return None if done else best
 
-    def _affords(self, problem: ScaledProblem, meshes: list[NextMesh], beyond: float = 0.0) -> bool:
+    def _affords(self, goal: Goal, problem: ScaledProblem, meshes: list[NextMesh], beyond: float = 0.0) -> bool:
         """Whether the rest of the allowance, and ``beyond`` more seconds, suffice for ``meshes`` and the estimate."""
-        again = work_again(problem.order, estimate.NEIGHBOUR[problem.order]) + problem.inside
-        return self.expense.affords([self._unknowns(problem, mesh) for mesh in meshes], again, beyond)
+        sizes, order = [self._size(goal, problem, mesh) for mesh in meshes], problem.order
+        return self.expense.affords(sizes, order, estimate.NEIGHBOUR[order], problem.inside, beyond)
 
-    def _unknowns(self, problem: ScaledProblem, mesh: NextMesh) -> float:
-        """Predicted number of unknowns of a ``mesh``."""
-        solution, order = self.solution, problem.order
-        a, ends = solution.half_width, solution.zone_ends.tolist()
-        eased = goals.eased(solution, problem, order, mesh.growth)
-        grading = Grading((-a, a), dict.fromkeys(ends, mesh.size * a), mesh.growth, eased=eased)
-        return self.expense.unknowns(grading, order, self.width * a)
+    def _size(self, goal: Goal, problem: ScaledProblem, mesh: NextMesh) -> MeshSize:
+        """Predicted size of a ``mesh`` on the way to ``goal``."""
+        grading = self._grading(goal, problem.order, mesh, filled=False)
+        least = min(grading.sizes.values())
+        swept = [(low, high, max(size, least)) for low, high, size in self._swept(goal)]
+        return self.expense.size(grading, problem.order, self.width * self.solution.half_width, swept)

@@ -31,7 +31,8 @@ class Condensation:
     compliance : (2 n, 2 n) array, or (n, n) without ``shear``
         Displacements of the contact line, first along x, then along y, under unit nodal forces.
     pulled : (2 N,) array or None
-        Displacements of all nodes under a unit tension on the right side, of a body that is pulled there.
+        Displacements of the nodes on sides of elements, of a body that is pulled on its right side, under a unit
+        tension there.
     """
 
     def __init__(
@@ -78,7 +79,8 @@ class Condensation:
         return self._factor.made if self._factor else 1
 
     def displace(self, forces: Array) -> Array:
-        """Displacements of all degrees of freedom, (2 N, k), under contact forces (2 n, k), or (n, k) without shear."""
+        """Displacements of the nodes on sides of elements, (2 N, k), under contact forces (2 n, k), or (n, k) without
+        shear."""
         far = self._far
         held = far.fields @ (far.moments @ forces) if far else np.zeros((len(self._held), forces.shape[1]))
         result = np.empty((len(self._free) + len(self._held), forces.shape[1]))

@@ -31,7 +31,7 @@ class CondensedBody:
 
     @property
     def stretched(self) -> Array:
-        """Displacements of all nodes, (2, N), under the tension that strains a long body by 1.
+        """Displacements of the nodes on sides of elements, (2, N), under the tension that strains a long body by 1.
 
         The strain is uniform, except in a body that is pulled at its end.
         """
@@ -42,13 +42,13 @@ class CondensedBody:
 
     @property
     def bent(self) -> Array:
-        """Displacements of all nodes of a half-plane, (2, N), under the tension that strains its surface by x: the
+        """Displacements of a half-plane, (2, N), under the tension that strains its surface by x: the
         stresses sigma_xx = s x and sigma_xy = -s y, without sigma_yy."""
         (x, y), kappa = self.body.points, self.body.kappa
         return np.array([x**2 / 2 - (5 + kappa) / (1 + kappa) * y**2 / 2, -(3 - kappa) / (1 + kappa) * x * y])
 
     def turned(self, height: float) -> Array:
-        """Displacements of all nodes, (2, N), of a body that turns by 1 about a pin at the ``height``."""
+        """Displacements (2, N) of a body that turns by 1 about a pin at the ``height``."""
         x, y = self.body.points
         return np.array([-(y + height), x])
 

@@ -24,7 +24,7 @@ class DisplacedBody:
     way : int
         1 for the lower body; -1 for the upper body, whose mesh is a mirror image below its contact line.
     u : (2, 2, N) array
-        Displacements of all nodes, by load point and component.
+        Displacements of the nodes on sides of elements, by load point and component.
     pressures : two of PPoly
         Pressure on the contact line, by load point.
     """

@@ -15,8 +15,39 @@ from partialslip_meshes import Mesh
 
 
 @dataclass(frozen=True)
+class Inside:
+    """Nodes inside elements, which no other element shares: eliminated from the stiffness, element by element.
+
+    Parameters
+    ----------
+    around : (t, 2 o) int array
+        Degrees of freedom on the sides of each triangle, along x, then along y.
+    moved : (t, 2 i, 2 o) array
+        Displacements of the nodes inside under unit displacements of those around, without forces inside.
+    """
+
+    around: Indices
+    moved: Array
+
+    @property
+    def count(self) -> int:
+        """Number of nodes inside elements."""
+        return self.moved.shape[0] * self.moved.shape[1] // 2
+
+    def everywhere(self, u: Array) -> Array:
+        """Displacements of all nodes of scikit-fem's elements, (..., 2, N + count), from those of the nodes on sides,
+        ``u`` (..., 2, N)."""
+        along = u.reshape(*u.shape[:-2], -1)[..., self.around, None]
+        inside = (self.moved @ along)[..., 0].reshape(*u.shape[:-2], len(self.moved), 2, -1)
+        return np.concatenate([u, np.moveaxis(inside, -2, -3).reshape(*u.shape[:-1], -1)], axis=-1)
+
+
+@dataclass(frozen=True)
 class DiscreteBody:
     """A discretised body: stiffness, contact line and outer boundary.
+
+    Its nodes are those on the sides of elements. Those inside have no forces, and their displacements follow from
+    these.
 
     Parameters
     ----------
@@ -26,6 +57,8 @@ class DiscreteBody:
         Kolosov's constant, which differs in plane strain and plane stress, and (kappa+1)/(2 mu).
     stiffness : (2 N, 2 N) sparse matrix
         Degrees of freedom are the displacements of all nodes along x, then those along y.
+    inside : Inside
+        The nodes inside elements.
     x : (n,) array
         Nodes on the contact line, ascending; those of each cell lie as :func:`partialslip_fem.elements.nodes_of`.
     mass : (n, n) sparse matrix
@@ -49,6 +82,7 @@ class DiscreteBody:
     kappa: float
     compliance: float
     stiffness: sp.csr_matrix
+    inside: Inside
     x: Array
     mass: sp.csr_matrix
     contact: Indices
@@ -58,6 +92,11 @@ class DiscreteBody:
     face: Indices
     pull: Array | None = None
     gripped: Indices = field(default_factory=lambda: np.empty(0, np.int64))
+
+    @property
+    def unknowns(self) -> int:
+        """Number of degrees of freedom, with those inside elements."""
+        return self.stiffness.shape[0] + 2 * self.inside.count
 
     def pulling(self) -> tuple[Array, Array]:
         """Displacements of all nodes (zero but for those of the plate that pulls), and nodal forces that then pull the
@@ -130,7 +169,9 @@ def body(
     """
     triangles, element = triangles_of(mesh), ELEMENTS[order]()
     basis = skfem.Basis(triangles, element, intorder=1)  # for the numbers of unknowns only
-    both = np.array([[0], [basis.N]])
+    stiffness, inside = _stiffness(basis, kappa, compliance)
+    count = basis.N - inside.count
+    both = np.array([[0], [count]])
 
     def on(lines: Indices) -> Indices:
         nodes = basis.get_dofs(facets_of(triangles, lines)).flatten()
@@ -142,18 +183,19 @@ def body(
     pull = None
     if pulled:
         end = skfem.FacetBasis(triangles, element, facets=facets_of(triangles, mesh.lines["right"]))
-        pull = np.concatenate([_tension.assemble(end), np.zeros(basis.N)])
+        pull = np.concatenate([_tension.assemble(end)[:count], np.zeros(count)])
     return DiscreteBody(
         order=order,
         kappa=kappa,
         compliance=compliance,
-        stiffness=_stiffness(basis, kappa, compliance),
+        stiffness=stiffness,
+        inside=inside,
         x=basis.doflocs[0, contact],
         mass=_mass(basis.doflocs[0, contact], order),
         contact=contact + both,
-        held=np.concatenate([along_x, basis.N + along_y]),
+        held=np.concatenate([along_x, count + along_y]),
         vertices=basis.nodal_dofs[0] + both,
-        points=basis.doflocs,
+        points=basis.doflocs[:, :count],
         face=face,
         pull=pull,
         gripped=on(mesh.lines["right"]) if gripped else np.empty(0, np.int64),
@@ -161,7 +203,8 @@ def body(
 
 
 def gradients(mesh: Mesh, order: int, u: Array) -> Array:
-    """Gradients of ``u`` (c, N) in the middle of the triangles of ``mesh``, (c, 2, t); elements of ``order``."""
+    """Gradients of ``u`` (c, N), at all nodes of elements of ``order``, in the middle of the triangles of ``mesh``,
+    (c, 2, t)."""
     middle = np.full((2, 1), 1 / 3), np.full(1, 1 / 2)
     basis = skfem.Basis(triangles_of(mesh), ELEMENTS[order](), quadrature=middle)
     return np.stack([basis.interpolate(component).grad[..., 0] for component in u])
@@ -172,27 +215,49 @@ def triangles_of(mesh: Mesh) -> skfem.MeshTri:
     return skfem.MeshTri(mesh.points.T.copy(), mesh.triangles.T.copy())
 
 
-def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> sp.csr_matrix:
-    """Stiffness of plane isotropic elasticity. Derivatives are constant multiples of those in the reference triangle,
-    as triangles are straight: the products are integrated there, once."""
+def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> tuple[sp.csr_matrix, Inside]:
+    """Stiffness of plane isotropic elasticity for the nodes on the sides of elements. Derivatives are constant
+    multiples of those in the reference triangle, as triangles are straight: the products are integrated there, once.
+
+    scikit-fem numbers nodes inside elements last, element by element.
+    """
     mu = (kappa + 1) / (2 * compliance)
     lam = mu * (3 - kappa) / (kappa - 1)
     inverse, area = basis.mapping.invA, np.abs(basis.mapping.detA)
     reference = _reference(basis.elem.maxdeg)
-    count, size = inverse.shape[2], basis.Nbfun
-    rows = np.repeat(basis.element_dofs.T, size, axis=1).ravel()
-    columns = np.tile(basis.element_dofs.T, size).ravel()
+    triangles, size = inverse.shape[2], basis.Nbfun
 
-    def block(*parts: tuple[float, int, int]) -> sp.csr_matrix:
-        """Sum of factor times the integral of d_i v d_j u, for the ``parts`` (factor, i, j)."""
+    def block(*parts: tuple[float, int, int]) -> Array:
+        """Sum of factor times the integral of d_i v d_j u, for the ``parts`` (factor, i, j), in each triangle."""
         weights = sum(factor * np.einsum("ce,de->ecd", inverse[:, i], inverse[:, j]) for factor, i, j in parts)
-        values = (weights * area[:, None, None]).reshape(count, 4) @ reference
-        return sp.coo_matrix((values.ravel(), (rows, columns)), (basis.N, basis.N)).tocsr()
+        values = (weights * area[:, None, None]).reshape(triangles, 4) @ reference
+        return values.reshape(triangles, size, size)
 
-    across = block((lam, 0, 1), (mu, 1, 0))
-    along_x, along_y = (block((lam + 2 * mu, i, i), (mu, 1 - i, 1 - i)) for i in (0, 1))
-    under = sp.hstack([across.T.tocsr(), along_y], format="csr")
-    return sp.vstack([sp.hstack([along_x, across], format="csr"), under], format="csr")
+    of_each = np.empty((triangles, 2, size, 2, size))
+    of_each[:, 0, :, 1] = across = block((lam, 0, 1), (mu, 1, 0))
+    of_each[:, 1, :, 0] = across.transpose(0, 2, 1)
+    for i in (0, 1):
+        of_each[:, i, :, i] = block((lam + 2 * mu, i, i), (mu, 1 - i, 1 - i))
+
+    outer = size - basis.elem.interior_dofs
+    count = basis.N - triangles * basis.elem.interior_dofs
+    values, moved = _without_inside(of_each, outer)
+    sides = basis.element_dofs[:outer].T
+    around = np.concatenate([sides, count + sides], axis=1)
+    rows, columns = (np.broadcast_to(index, values.shape).ravel() for index in (around[:, :, None], around[:, None]))
+    stiffness = sp.coo_matrix((values.ravel(), (rows, columns)), (2 * count, 2 * count)).tocsr()
+    return stiffness, Inside(around, moved)
+
+
+def _without_inside(of_each: Array, outer: int) -> tuple[Array, Array]:
+    """Stiffness of the first ``outer`` nodes of each triangle, (t, 2 o, 2 o), while the others have no forces, and the
+    displacements of these, (t, 2 i, 2 o), from the stiffness ``of_each`` (t, 2, o + i, 2, o + i)."""
+    count, sides = len(of_each), 2 * outer
+    own = of_each[:, :, :outer, :, :outer].reshape(count, sides, sides)
+    to_inside = of_each[:, :, outer:, :, :outer].reshape(count, -1, sides)
+    inside = of_each[:, :, outer:, :, outer:].reshape(count, *[to_inside.shape[1]] * 2)
+    moved: Array = -np.linalg.solve(inside, to_inside).astype(np.float64, copy=False)
+    return own + to_inside.transpose(0, 2, 1) @ moved, moved
 
 
 @lru_cache

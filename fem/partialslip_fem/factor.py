@@ -144,12 +144,12 @@ class _Cholmod:
         self._cvxopt.cholmod.solve(found, place, sys=7)  # permutes into the factor's order
         if not np.array_equal(np.asarray(place).ravel()[first:], np.arange(first, first + count)):
             raise AssertionError("the factor must keep the last unknowns last")
-        starts, rows, values = (np.asarray(part).ravel() for part in self._cvxopt.cholmod.getfactor(found).CCS)
+        kept = self._cvxopt.cholmod.getfactor(found)[first:, first:]
         if not of.k:
             self._factor = None  # getfactor has converted it
+        starts, rows, values = (np.asarray(part).ravel() for part in kept.CCS)
         lower = np.zeros((count, count), order="F")
-        kept = slice(starts[first], None)
-        lower[rows[kept] - first, np.repeat(np.arange(count), np.diff(starts[first:]))] = values[kept]
+        lower[rows, np.repeat(np.arange(count), np.diff(starts))] = values
         return of.taken(lower)
 
     def back_substitute(self, load: Array) -> Array:

@@ -159,8 +159,9 @@ def _in_the_middle(body: DisplacedBody) -> Array:
     mu = (kappa + 1) / (2 * body.part.compliance)
     lam = mu * (3 - kappa) / (kappa - 1)
     result = []
-    for u in body.u:
-        (xx, xy), (yx, yy) = gradients(body.condensed.mesh, body.condensed.body.order, u)
+    discrete = body.condensed.body
+    for u in discrete.inside.everywhere(body.u):
+        (xx, xy), (yx, yy) = gradients(body.condensed.mesh, discrete.order, u)
         volume = lam * (xx + yy)
         result.append([volume + 2 * mu * xx, volume + 2 * mu * yy, body.way * mu * (xy + yx)])
     return np.array(result)

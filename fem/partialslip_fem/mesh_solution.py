@@ -145,7 +145,7 @@ class MeshSolution:
     @property
     def dofs(self) -> int:
         """Degrees of freedom of all bodies."""
-        return sum(each.body.stiffness.shape[0] for each in self.bodies)
+        return sum(each.body.unknowns for each in self.bodies)
 
     @property
     def zone_ends(self) -> Array:

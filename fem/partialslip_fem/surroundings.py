@@ -89,7 +89,7 @@ def left_over(part: Part, mesh: Mesh, order: int, places: Array, backend: Backen
     held = _flamant(part, z[own.held % nodes], _on_face(part, places))  # (2, 2, h, l)
     known[own.held, :-1] = -np.where(along_y[:, None], held[1], held[0]).transpose(1, 0, 2).reshape(len(own.held), -1)
     load = np.zeros_like(known)
-    load[:, :-1] = _tractions_left(part, mesh, order, places)
+    load[:, :-1] = _tractions_left(part, mesh, order, nodes, places)
     load[:, :-1] -= own.stiffness @ known[:, :-1]
     if own.pull is not None:
         known[:, -1], load[:, -1] = own.pulling()
@@ -114,9 +114,9 @@ def _flamant(part: Part, z: Complex, origins: Complex) -> Array:
     return np.array([w.real, w.imag])
 
 
-def _tractions_left(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
+def _tractions_left(part: Part, mesh: Mesh, order: int, count: int, places: Array) -> Array:
     """Nodal forces (2 N, 2 l) of the tractions with which Flamant's solutions for forces at ``places`` load the body's
-    boundary, reversed. Forces on nodes that are held do not count.
+    boundary, reversed; N is the ``count`` of nodes on sides of elements. Forces on nodes that are held do not count.
 
     The traction of a force F at the distance vector r on a surface with the outward normal n is
     -2/pi (F.r) (r.n) r/r^4, along r. It vanishes on a flat face.
@@ -142,7 +142,7 @@ def _tractions_left(part: Part, mesh: Mesh, order: int, places: Array) -> Array:
     values = np.concatenate([(np.broadcast_to(np.asarray(each[0]), x.shape) * ds).ravel() for each in basis.basis])
     quadrature = sp.coo_array((values, (rows, np.tile(np.arange(x.size), len(basis.basis)))), (basis.N, x.size)).tocsr()
     both = np.tile(r_x, 2), np.tile(r_y, 2)
-    return np.concatenate([quadrature @ (columns * each) for each in both])
+    return np.concatenate([quadrature[:count] @ (columns * each) for each in both])
 
 
 def _on_face(part: Part, x: Array) -> Complex:

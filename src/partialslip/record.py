@@ -4,7 +4,7 @@ A file is sealed (:mod:`partialslip.seal`), and its outcomes are concluded anew 
 """
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,7 @@ from partialslip.result.record import JsonNumber, ResultRecord, record_of
 from partialslip.run import Run
 from partialslip.scene import Scene
 from partialslip.seal import KEY, edited, sealed_text
+from partialslip.shown import ByMethod
 from partialslip.strictjson import converted, parsed
 
 SCHEMA = "partialslip/result/3"
@@ -103,7 +104,7 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
         )
 
 
-class Record(msgspec.Struct, frozen=True):
+class Record(ByMethod[ResultRecord], msgspec.Struct, frozen=True):
     """Content of ``results.json``, in SI units.
 
     Parameters
@@ -153,19 +154,9 @@ class Record(msgspec.Struct, frozen=True):
         said = {True: ", edited since it was written", False: "", None: ", without a checksum"}[self.edited]
         return f"Record of {self.scene.name}{said}: {self.outcome}; {', '.join(self.methods)}"
 
-    def __getitem__(self, method: str) -> ResultRecord:
-        """Return the record of the result of ``method``, as a run does."""
-        try:
-            return self.methods[method]
-        except KeyError:
-            raise KeyError(f"method {method!r}: the record has {', '.join(self.methods)}") from None
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names of the methods."""
-        return iter(self.methods)
-
-    def _ipython_key_completions_(self) -> list[str]:
-        return list(self.methods)
+    @property
+    def _by_method(self) -> Mapping[str, ResultRecord]:
+        return self.methods
 
     @property
     def json(self) -> str:

@@ -1,7 +1,7 @@
 """A run: solve one scene by one or more methods, and compare each result with the reference."""
 
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -27,7 +27,7 @@ from partialslip.result.traction import sliding
 from partialslip.rig import Rig, key_of, load_rig
 from partialslip.scene import Effects, Scene
 from partialslip.scene.reading import AnyScene, as_scene
-from partialslip.shown import Drawn
+from partialslip.shown import ByMethod, Drawn
 
 if TYPE_CHECKING:
     from partialslip.frame import DataFrame
@@ -40,8 +40,8 @@ _rigs: dict[str, Rig] = {}
 
 
 @dataclass(frozen=True, repr=False)
-class Run(Drawn):
-    """A solved scene with its comparisons.
+class Run(ByMethod[Result], Drawn):
+    """A solved scene with its comparisons: ``run["fem"]`` is ``run.results["fem"]``.
 
     Parameters
     ----------
@@ -65,19 +65,9 @@ class Run(Drawn):
     asked: Asked | None = None
     spacing: Mapping[str, float] = field(default_factory=dict)
 
-    def __getitem__(self, method: str) -> Result:
-        """Return the result of ``method``: ``run["fem"]`` is ``run.results["fem"]``."""
-        try:
-            return self.results[method]
-        except KeyError:
-            raise KeyError(f"method {method!r}: the run has {', '.join(self.results)}") from None
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names of the methods."""
-        return iter(self.results)
-
-    def _ipython_key_completions_(self) -> list[str]:
-        return list(self.results)
+    @property
+    def _by_method(self) -> Mapping[str, Result]:
+        return self.results
 
     def __repr__(self) -> str:
         """Scene and outcome, then a line for each result and each comparison."""

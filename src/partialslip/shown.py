@@ -3,8 +3,8 @@
 import dataclasses
 import importlib
 import reprlib
-from collections.abc import Sized
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping, Sized
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import msgspec
 import numpy as np
@@ -14,6 +14,7 @@ from partialslip.arrays import Array
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_Found = TypeVar("_Found")
 _DISPLAY = "partialslip.report.notebook"  # a name: what shows objects stands above them, and is loaded when it is asked
 
 
@@ -24,6 +25,31 @@ class Short:
 
     def __repr__(self) -> str:
         return short(self)
+
+
+class ByMethod(Generic[_Found]):
+    """Mixin: what each method has found, by its name: ``run["fem"]``."""
+
+    __slots__ = ()
+
+    @property
+    def _by_method(self) -> Mapping[str, _Found]:
+        raise NotImplementedError
+
+    def __getitem__(self, method: str) -> _Found:
+        """Return what ``method`` has found."""
+        try:
+            return self._by_method[method]
+        except KeyError:
+            has = ", ".join(self._by_method)
+            raise KeyError(f"method {method!r}: the {type(self).__name__.lower()} has {has}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the methods."""
+        return iter(self._by_method)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self._by_method)
 
 
 class Notebook:

@@ -167,11 +167,15 @@ def test_broken_file(rejected, content, expected):
         ("nul\0.toml", ["cannot be read"]),
         ("two\nlines", [r"'two\nlines'"]),
         ("two\nlines.toml", [r"two\nlines.toml: cannot be read: No such file"]),
+        ("my-scen.toml", ["my-scen.toml: cannot be read: No such file", "did you mean 'my-scene.toml'?"]),
+        ("my_scene", ["scene 'my_scene': neither a file nor a shipped scene; did you mean 'my-scene.toml'?"]),
+        ("hertz-sheer.toml", ["hertz-sheer.toml: cannot be read: No such file", "did you mean 'hertz-shear'?"]),
     ],
 )
 def test_no_such_scene(rejected, tmp_path, path, expected):
     for folder in ("folder", "folder.toml"):
         (tmp_path / folder).mkdir()
+    (tmp_path / "my-scene.toml").touch()
     message = rejected(None, ["run", path, "--with", "exact"])
     assert not [part for part in expected if part not in message]
 
@@ -212,7 +216,12 @@ def test_bad_setting(rejected, setting, expected):
         (["scenes", "extra"], "extra"),
         ([*SHIPPED, "--bogus"], "--bogus"),
         ([*SHIPPED, "extra"], "extra"),
-        (["run", "hertz-shear", "--with", "exat"], "--with 'exat': must be of exact, march, fem"),
+        (["run", "hertz-shear", "--with", "exat"], "--with 'exat': must be of exact, march, fem, equivalent; did you"),
+        (
+            ["fatigue", "hertz-shear", "--with", "exat"],
+            "'exat' (choose from 'exact', 'march', 'fem'); did you mean 'exact'?",
+        ),
+        (["rnu", "hertz-shear"], "did you mean 'run'?"),
         (["run", "hertz-shear", "--with", "exact,bem"], "--with 'bem': must be of exact, march, fem"),
         (["run", "hertz-shear", "--with", ""], "--with '': must be of exact, march, fem"),
         (["run", "hertz-shear", "--with", "exact,"], "--with '': must be of exact, march, fem"),
@@ -233,6 +242,13 @@ def test_bad_setting(rejected, setting, expected):
 )
 def test_bad_arguments(rejected, arguments, expected):
     assert expected in rejected(GOOD, arguments)
+
+
+def test_what_the_run_refuses_names_the_scene(rejected):
+    two = "material={upper={E=72e9, nu=0.3}, lower={E=210e9, nu=0.3}}"
+    for scene in ("bench.toml", "hertz-shear"):
+        said = rejected(GOOD, ["run", scene, "--set", two, "--with", "exact"])
+        assert f"{scene}: material.upper, material.lower: the bodies differ" in said
 
 
 def test_all_but_incompressible_is_for_the_exact_method_alone(rejected, capsys):

@@ -7,12 +7,13 @@ import pytest
 from closed import CLOSED, exact
 from msgspec.structs import replace
 
-from partialslip import load_scene
+from partialslip import load_scene, run
 from partialslip.benchmark import read_problems
 from partialslip.benchmark.freeze import covering, frozen_parts
 from partialslip.benchmark.measured import GROUPS, quantities
 from partialslip.benchmark.problem import EDITION, chosen_problems, problem_checksum, read_frozen, texts
 from partialslip.errors import InputError
+from partialslip.fatigue import hot_spots
 from partialslip.scene import Effects, Fatigue
 from partialslip.scene.reading import shipped_scenes
 
@@ -33,6 +34,14 @@ def test_targets_in_closed_form_are_found_again(number):
     assert found.keys() >= problem.targets.keys()
     for key, target in problem.targets.items():
         assert abs(found[key].value - target.value) <= target.uncertainty * target.scale, key
+
+
+def test_stresses_have_the_errors_that_a_run_tells():
+    scene, places = PROBLEMS["PS-03"].scene, PROBLEMS["PS-03"].places
+    fem = run(scene.replace({"fem.accuracy": 1e-2}), "fem", subsurface=True)["fem"]
+    found, spots = quantities(scene, fem, places), hot_spots(scene, fem)
+    for key, spot in {"sigma_xx": "sigma_xx", "swt": "swt", "swt_line": "swt.line"}.items():
+        assert found[key].error * found[key].scale == pytest.approx(spots[spot].error * spots[spot].value, rel=1e-12)
 
 
 @pytest.mark.parametrize("number", PROBLEMS)

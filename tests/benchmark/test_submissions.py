@@ -44,6 +44,12 @@ def test_answers_are_written_and_read_back(tmp_path):
     assert board.rows[0][1].startswith("A (")
 
 
+def test_answers_that_are_kept_need_no_tables(tmp_path):
+    found = code_answers("exact", SOME, folder=tmp_path)
+    (tmp_path / "PS-02.csv").write_text("no table", "utf-8")
+    assert code_answers("exact", SOME, folder=tmp_path).answers == found.answers  # with the same CPU seconds
+
+
 def test_a_code_that_lacks_something_does_not_offer_it():
     assert code_answers("equivalent", SOME).answers == {}
     assert scoreboard(SOME, [code_answers("equivalent", SOME)]).rows[0][1] == "–"

@@ -76,6 +76,8 @@ def test_the_same_request_writes_to_the_same_folder(here, capsys):
         (["--criterion", "findley"], "fretting-aluminium: fatigue.k_findley: missing; the criterion findley needs it"),
         (["--criterion", "miner"], "fretting-aluminium: criterion 'miner': must be of principal, swt, fatemi-socie, "
          "findley, dang-van, crossland, ruiz"),
+        (["--criterion", "stw"], "fretting-aluminium: criterion 'stw': must be of principal, swt, fatemi-socie, "
+         "findley, dang-van, crossland, ruiz; did you mean 'swt'?"),
         (["--distance", "-1"], "fretting-aluminium: fatigue.distance = -1: must be > 0.0"),
         (["--distance", "far"], "fretting-aluminium: fatigue.distance = 'far': must be a number, not a string"),
         (["--method", "fem", "--set", "fatigue.k_finley=1"],

@@ -133,6 +133,18 @@ def test_ruiz(assessed):
     assert tension * work == pytest.approx(found.F2, rel=1e-9)
 
 
+def test_the_errors_of_ruiz_tell_how_far_methods_are_apart(assessed):
+    """Those of exact come from its few points alone. Without an estimate of the stresses there is none."""
+    scene = SCENE.replace({"fem.accuracy": 1e-3})
+    march, fem = (partialslip.run(scene, method, subsurface=True)[method] for method in ("march", "fem"))
+    true = partialslip.assess(scene, march, ["ruiz"]).ruiz
+    for ruiz in (assessed.ruiz, partialslip.assess(scene, fem, ["ruiz"]).ruiz):
+        for found, best, *errors in zip(ruiz[:2], true[:2], ruiz.errors, true.errors, strict=True):
+            assert abs(found - best) < sum(errors) * best
+            assert max(errors) < 0.1
+    assert partialslip.assess(scene, fem, ["ruiz"], body="upper").ruiz.errors is None
+
+
 @pytest.mark.parametrize(
     ("scene", "criteria", "line"),
     [

@@ -36,7 +36,7 @@ def test_every_method(method, bar):
     scene, result = solved("hertz-small-tension", "fem.accuracy=1e-4", method=method)
     true = edges(*solved("hertz-small-tension"))
     for edge, known in zip(edges(scene, result), true, strict=True):
-        for found, closed in ((edge.K_N, known.K_N), (edge.K_S, known.K_S)):
+        for found, closed in ((edge.K_N, known.K_N), (edge.K_T, known.K_T), (edge.K_S, known.K_S)):
             off = abs(found.value - closed.value)
             assert off < bar * closed.value
             assert off <= found.error + 1e-9 * closed.value

@@ -64,6 +64,12 @@ def test_the_method_has_its_say(fem):
     assert "fem: accuracy 0.01 not reached" in assessment_notes(found)
 
 
+def test_a_distance_far_beyond_the_contact_looks_like_a_slip_of_unit(fem):
+    found = assess(SCENE.replace({"fatigue.distance": 50.0}), fem, ["swt"])
+    (line,) = (line for line in assessment_notes(found) if "fatigue.distance" in line)
+    assert line.endswith(" a, far beyond the contact: is units = 'N-mm' right?")
+
+
 def test_the_heading_tells_whether_there_are_load_points_enough(fem):
     found = assess(SCENE, fem, ["swt"])
     for change, told in (

@@ -97,6 +97,16 @@ def test_seconds_that_are_left_buy_accuracy_up_to_the_finest(counter):
     assert max(found[1000, 1e-5].estimate[key] for key in "amn") <= 1e-5 == found[1000, 1e-5].settings["accuracy"]
 
 
+def test_the_finest_accuracy_is_priced_where_the_contact_moves(counter):
+    """Its meshes would have a million vertices in what the ends of the contact sweep."""
+    scene = load_scene("fretting-aluminium", ["load.P=[100e3, 135750]", "fem.accuracy=1e-2"])
+    free = solve(scene, plan(scene))
+    allowed, counter.seconds = 4 * counter.seconds, 0.0
+    limited = solve(scene, plan(scene), allowance=Allowance(allowed, counter, 1e-9))
+    assert counter.seconds <= 1.1 * allowed
+    assert max(limited.estimate.values()) <= max(free.estimate.values())
+
+
 @pytest.mark.fault
 def test_meshes_taken_to_cost_nothing(counter, monkeypatch):
     monkeypatch.setattr(mesh_cost, "_work", lambda _: 1e-9)

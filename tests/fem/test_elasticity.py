@@ -5,11 +5,12 @@ import pytest
 import scipy.sparse.linalg as spla
 import skfem
 from numpy.polynomial.legendre import legval
+from skfem.models.elasticity import linear_elasticity
 from skfem.models.poisson import laplace
 
-from partialslip_fem import factor
+from partialslip_fem import elasticity, factor
 from partialslip_fem.condensation import Condensation
-from partialslip_fem.elasticity import body
+from partialslip_fem.elasticity import body, triangles_of
 from partialslip_fem.elements import ELEMENTS, nodes_of
 from partialslip_fem.farfield import FarField
 from partialslip_meshes import block
@@ -126,6 +127,65 @@ def test_displacements_of_all_nodes_carry_the_contact_forces(half, backend):
     residual[half.contact.ravel()] -= forces
     residual[half.held.ravel()] = 0
     assert np.abs(residual).max() < 1e-10
+
+
+def with_all_nodes(mesh, order):
+    """Stiffness with the nodes inside elements, by scikit-fem's own model of elasticity, in the order of ours."""
+    element = ELEMENTS[order]()
+    scalar, vector = (skfem.Basis(triangles_of(mesh), each) for each in (element, skfem.ElementVector(element)))
+    mu = (1.8 + 1) / 2
+    K = linear_elasticity(mu * (3 - 1.8) / (1.8 - 1), mu).assemble(vector)
+    place = np.empty((2, scalar.N), dtype=int)
+    for component in (0, 1):
+        place[component, scalar.element_dofs] = vector.element_dofs[component::2]
+    return K[place.ravel()][:, place.ravel()]
+
+
+def off_the_model_with_all_nodes(order):
+    """Displacements of all nodes under forces on the line: largest error against that model, over the largest one."""
+    mesh = block(3.0, (-1.2, 1.2), SIZES, 0.8)
+    small = body(mesh, 1.8, order)
+    forces = np.random.default_rng(5).normal(size=(small.contact.size, 1))
+    found = small.inside.everywhere(Condensation(small).displace(forces)[:, 0].reshape(2, -1))
+
+    K = with_all_nodes(mesh, order)
+    count, sides = K.shape[0] // 2, small.stiffness.shape[0] // 2
+    assert small.unknowns == K.shape[0]
+
+    def among_all(unknowns):
+        return unknowns % sides + count * (unknowns >= sides)
+
+    load = np.zeros(K.shape[0])
+    load[among_all(small.contact.ravel())] = forces[:, 0]
+    free = np.setdiff1d(np.arange(K.shape[0]), among_all(small.held))
+    true = np.zeros(K.shape[0])
+    true[free] = spla.spsolve(K[free][:, free].tocsc(), load[free])
+    return np.abs(found - true.reshape(2, -1)).max() / np.abs(true).max()
+
+
+@pytest.mark.parametrize("order", [2, 3, 4, 6])
+def test_nodes_inside_elements_are_eliminated_exactly(order):
+    assert off_the_model_with_all_nodes(order) < 1e-11
+
+
+@pytest.mark.fault
+def test_nodes_inside_eliminated_along_one_axis_alone_are_seen(monkeypatch):
+    """Deliberate fault: displacements along y outside an element do not move the nodes inside it."""
+    true = elasticity._without_inside
+
+    def alone(of_each, outer):
+        values, moved = true(of_each, outer)
+        return values, moved * (np.arange(2 * outer) < outer)
+
+    monkeypatch.setattr(elasticity, "_without_inside", alone)
+    assert off_the_model_with_all_nodes(4) > 1e-2
+
+
+@pytest.mark.parametrize(("order", "kept"), [(2, 1.0), (4, 0.65), (6, 0.48)])
+def test_only_nodes_on_sides_of_elements_are_factored(order, kept):
+    """Of k^2 / 2 nodes for a triangle of order k, (k - 1)(k - 2) / 2 lie inside."""
+    small = body(block(3.0, (-1.2, 1.2), SIZES, 0.8), 1.8, order)
+    assert small.stiffness.shape[0] / small.unknowns == pytest.approx(kept, abs=0.02)
 
 
 @pytest.mark.parametrize("order", [4, 5, 6])

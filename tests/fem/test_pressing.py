@@ -346,7 +346,8 @@ def shape(q):
 @pytest.mark.slow
 def test_a_pad_is_pressed_with_the_shear_of_the_closed_form(monkeypatch):
     """Surfaces of like bodies of a size move along x with the same strain wherever they are pressed: the shear that is
-    locked in is x sqrt(1 - x^2). Its size is that of a step-by-step solution, which only scatters about that form."""
+    locked in is x sqrt(1 - x^2). Its size is that of step-by-step solutions, which only scatter about that form: by 6 %
+    from mesh to mesh, so that a single one tells little."""
     amplitude, off = shape(locked_in(PAD)[0])
     assert off < 0.02
     finer, q1 = locked_in(PAD.replace(fem={"accuracy": 1e-4}))
@@ -354,9 +355,11 @@ def test_a_pad_is_pressed_with_the_shear_of_the_closed_form(monkeypatch):
     assert q1.estimate["q1"] < 0.03
     monkeypatch.setattr(coulomb_coupled, "_similar", lambda *_: None)
     monkeypatch.setattr(coulomb_coupled, "_nearly_similar", lambda *_: None)
-    steps, by_steps = locked_in(PAD.replace(fem={"size": 0.02}, load={"steps": 64}))
-    assert shape(steps)[0] == pytest.approx(amplitude, rel=0.05)
-    assert by_steps.shares["steps"]["q1"] > 0.1
+    sizes = np.linspace(0.017, 0.023, 7)
+    steps, told = zip(*(locked_in(PAD.replace(fem={"size": size}, load={"steps": 64})) for size in sizes), strict=True)
+    assert shape(np.mean(steps, axis=0))[0] == pytest.approx(amplitude, rel=0.05)
+    assert np.ptp([shape(each)[0] for each in steps]) > 0.1 * amplitude
+    assert all(each.shares["steps"]["q1"] > 0.07 for each in told)
 
 
 FLAT_PAD = PAD.replace(profile={"kind": "flat-rounded", "R": 0.01, "b": 0.3e-3}, load={"P": 8e4}, fem={"size": 0.04})

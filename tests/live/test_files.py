@@ -108,8 +108,6 @@ def test_a_title_is_text():
             "load: P, Q and sigma are out of phase",
         ),
         ("hertz-shear", ["friction.f=0"], "friction.f = 0: must be > 0"),
-        ("hertz-shear", ["bodies.upper={width=1, height=1}"], "bodies.upper: must not be given for a live page"),
-        ("hertz-shear", ['bodies.lower={mesh="a.msh", unit=1e-3}'], "bodies.lower: must not be given for a live page"),
         ("hertz-shear", ["effects.opposing-slip=false"], "effects.opposing-slip: must not be given for a live page"),
         ("hertz-shear", ["material.upper={E=1e9, nu=0.3}"], "material.upper, material.lower: the bodies differ"),
     ],
@@ -117,6 +115,18 @@ def test_a_title_is_text():
 def test_scenes_that_it_is_not_for(scene, overrides, says):
     with pytest.raises(InputError, match=f"^{re.escape(says)}"):
         live_page(load_scene(scene, overrides))
+
+
+def test_finite_bodies_are_said_to_be_left_out(tmp_path, capsys):
+    """The page is that of half-planes under the same loads."""
+    blocks = ["bodies.upper={width=1, height=1}", "bodies.lower={width=1, height=1}"]
+    says = "he page shows half-planes: bodies.upper, bodies.lower left out"
+    plain, page = (live_page(load_scene("hertz-shear", each)) for each in ([], blocks))
+    assert [says in text for text in (plain, page)] == [False, True]
+    assert Outline(plain).scene == Outline(page).scene
+    command = ["page", "hertz-shear", "--set", blocks[0], "--set", blocks[1], "--out", str(tmp_path / "out")]
+    assert main(command) == 0
+    assert f"t{says}\n" in capsys.readouterr().out
 
 
 def test_refused_in_one_line(tmp_path, refused):

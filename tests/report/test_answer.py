@@ -170,3 +170,9 @@ def test_errors_within_their_bars_with_larger_estimates():
 def test_one_method_has_nothing_to_compare_with():
     found = ran({"fem": result()})
     assert (rows.verdict(found), found.conclusion.code) == ("no bars: nothing to compare with", 0)
+
+
+def test_a_contact_that_slides_has_no_stick_zone_to_compare():
+    slides = load_scene("hertz-shear", ["load.Q=[-1e9, 1e9]"])
+    last = printed(run(slides, "exact")).replace("\n", " ").split("  ")[-1]
+    assert "no bars: the contact slides as a whole, so there is no stick zone to compare" in last

@@ -1,5 +1,6 @@
 """Finite bodies beside half-planes: it is half-planes that are off; whose units and stick zones are shown."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -43,6 +44,8 @@ def test_the_table_of_finite_bodies_blames_half_planes():
     assert "What half-planes are off by, beside fem" in page
     assert "Errors of fem" not in page
     assert "difference, in p0 and f p0" in page
+    values = page.partition("<h2>Values</h2>")[2].partition("</table>")[0]
+    assert re.findall(r"half-planes \(exact\)|>fem<", values) == ["half-planes (exact)", ">fem<"]
 
 
 def test_half_planes_beside_half_planes_have_errors():

@@ -44,10 +44,17 @@ def ran(scene=BLOCKS, **changes):
 
 def test_the_file_has_the_units_of_the_scene():
     head, *lines = csv.reader(io.StringIO(loop_csv(ran(plates=plates(40)))))
-    assert head == ["displacement [mm]", "Q [N/mm]"]
-    found = np.array(lines, float) * [1e-3, 1e3]
+    assert head == ["displacement [mm]", "Q [N/mm]", "load point"]
+    assert {number: line[-1] for number, line in enumerate(lines) if line[-1]} == {0: "2", 20: "1", 40: "2"}
+    found = np.array([line[:2] for line in lines], float) * [1e-3, 1e3]
     np.testing.assert_allclose(found, plates(40).loop, rtol=1e-12, atol=1e-20)
     assert loop_csv(ran()) == ""
+
+
+def test_load_points_between_which_Q_stays_are_not_told():
+    """P or the tension alone changes there: Q does not tell where a way ends."""
+    stays = replace(plates(40), at_points=np.array([1.0, 1.0, -1.0]))
+    assert all(line.endswith(",") for line in loop_csv(ran(plates=stays)).splitlines()[1:])
 
 
 def test_files_and_page_of_finite_bodies_have_the_loop(tmp_path):

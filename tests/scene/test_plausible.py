@@ -27,6 +27,7 @@ def with_(table, **values):
         (with_("profile", R=5e12), "a/R is about"),
         (with_("load", P=300e9), "a = "),
         (with_("load", sigma=[0, 20e6]), "load.sigma = 2e+07 MPa is 1.7e+02 of E, more than any elastic strain: is"),
+        (parse_scene(RIG | {"fatigue": {"distance": 1e9}}), "fatigue.distance = 1e+09 mm is "),
         (with_("friction", f=[0.6, 0.4], x=[-500, 500]), "friction.x reaches to"),
         (with_("friction", f=[0.6, 0.4], x=[-5e-4, 5e-4]), "friction.x reaches to"),
     ],

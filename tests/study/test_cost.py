@@ -19,7 +19,7 @@ from partialslip.cli import run as command
 from partialslip.cli.cost import _left_out, _progress
 from partialslip.study.cost import ladder as cost
 from partialslip.study.cost import prices
-from partialslip.study.cost.figure import phases_svg
+from partialslip.study.cost.figure import errors_svg, phases_svg
 from partialslip.study.cost.spending import Spending
 
 SCENE = partialslip.load_scene("hertz-large-tension")
@@ -189,6 +189,17 @@ def test_panels_of_phases_without_data_are_left_out():
     both = phases_svg([point("P4, adapted", 1.0, 1e-3), point("P4, adapted", 4.0, 1e-5, 4000)], "two")
     assert {"CPU s of the process", "CPU s of the method", "P4, adapted: 1.00"} <= {*texts(both)}
     assert phases_svg([replace(point("exact", 1.0, 0.0), counts={})], "none") == ""
+
+
+def test_seconds_have_plain_labels_that_do_not_touch():
+    """A short axis has three labels in a decade, a long one the powers of ten alone."""
+    short, long = (
+        texts(errors_svg([point("P4", least, 1e-3), point("P4", most, 1e-5)], [], "one"))
+        for least, most in ((0.55, 3.9), (0.55, 800.0))
+    )
+    assert {"1", "2"} <= {*short}
+    assert {"1", "10", "100"} <= {*long}
+    assert not {"2", "20"} & {*long}
 
 
 def test_a_peer_is_met_at_its_best_error_and_in_its_time():

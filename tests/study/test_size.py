@@ -276,7 +276,10 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert [row["point"] for row in points if row["quantity"] == "a"] == ["fitted"] * 3 + [PointStatus.UNCLEAR] * 3
     assert points[-1]["point"] == "too narrow"
     laws = list(csv.DictReader(tables.laws_csv(study).splitlines()))
-    assert [laws[0][key] for key in ("quantity", "kind", "low", "high")] == ["a", "interpolated", "4.0", "8.0"]
+    unit = "[a of the half-plane]"
+    ends = (f"low {unit}", f"high {unit}")
+    assert [laws[0][key] for key in ("quantity", "kind", *ends)] == ["a", "interpolated", "4.0", "8.0"]
+    assert all(f"size {unit}" in table[0] for table in (points, laws))
     assert tables.laws_table(study)[1][0][-1] == "4, 8, 16"
     assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p0"]
     assert "not solved: bodies.*.width 2.0, accuracy 1.0: too narrow" in tables.size_notes(study)

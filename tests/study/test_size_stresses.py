@@ -58,7 +58,12 @@ def test_stresses_have_laws_and_needed_sizes_like_all_quantities():
     assert head == ("largest", "unit", "size", "fem", "x, mm", "half-plane", "x, mm")
     assert rows[0] == ("sigma_xx", "MPa", "4", "100.0000 +- 0.0001", "1", "87.5", "1")
     data = list(csv.DictReader(stresses.stresses_csv(study).splitlines()))
-    assert [data[0][key] for key in ("size", "by", "quantity", "unit")] == ["4.0", "fem", "sigma_xx", "Pa"]
+    assert [data[0][key] for key in ("size [a of the half-plane]", "by", "quantity", "unit")] == [
+        "4.0",
+        "fem",
+        "sigma_xx",
+        "Pa",
+    ]
     assert "sigma_xx, largest" in size_svg(stresses.stresses_of(study))
     assert size.stress_quantities(found) == ("sigma_xx", "swt", "swt.line")
     assert size.along(axis, found).mesh["sigma_xx"] == pytest.approx(1e-6)

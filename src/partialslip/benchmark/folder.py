@@ -2,7 +2,7 @@
 
 import itertools
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,7 +24,7 @@ class Folder(NamedTuple):
     meta: Meta | None
     answers: dict[str, Answer]
     tables: dict[str, TableValues]
-    wrong: list[str]
+    wrong: Sequence[str]
 
     def as_written(self) -> Submission:
         """The answers as the files give them. Raises InputError if anything is wrong."""
@@ -60,8 +60,9 @@ def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]
     return examined(folder, known).submission(known)
 
 
-def examined(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> Folder:
-    """Read a submission as far as it can be read. Parameters as for :func:`read_submission`."""
+def examined(folder: str | os.PathLike[str], known: Mapping[str, Problem], *, with_tables: bool = True) -> Folder:
+    """Read a submission as far as it can be read, with or without its tables. Other parameters as for
+    :func:`read_submission`."""
     path = Path(folder)
     if not path.is_dir():
         return Folder(None, {}, {}, [f"{folder}: must be a folder with {META} and PS-01.json and so on"])
@@ -84,7 +85,7 @@ def examined(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> Fo
         answers[number] = answer
         wrong += [f"{file}: {line}" for line in (*_ladder_faults(answer), *_unknown(answer, known[number].targets))]
         table = file.with_suffix(".csv")
-        if os.path.lexists(table):
+        if with_tables and os.path.lexists(table):
             try:
                 tables[number] = read_table(known[number], table)
             except InputError as error:

@@ -183,21 +183,21 @@ def _target(
         value = (_mean(key, result, its) if on_cells else None) or quantity.value
         off = abs(values[key].value - value) / quantity.scale
         told = f"{other.words} within {max(off, 1e-16):.0e}"
-        own = its.estimate.get(quantity.estimate, 0.0)
+        own = values[key].error
         if other.rough and off <= _CONSISTENT * own:
             said.append(f"{told}, its own error {own:.0e}")
         else:
             said.append(told)
             counted.append(off)
-    estimate = result.estimate.get(quantity.estimate, math.nan)
-    known = way.words if exact else way.words + ("" if math.isnan(estimate) else f", estimate {estimate:.0e}")
+    own = quantity.error
+    known = way.words if exact else way.words + ("" if math.isnan(own) else f", estimate {own:.0e}")
     return Target(
         value=quantity.value,
         unit=quantity.unit,
         scale=quantity.scale,
         uncertainty=_of_exact(min(counted), way.words == _GRADUAL)
         if exact
-        else max([0.0 if math.isnan(estimate) else estimate, *counted, _DIGITS]),
+        else max([0.0 if math.isnan(own) else own, *counted, _DIGITS]),
         known="; ".join([known, *said]),
         group=quantity.group,
     )

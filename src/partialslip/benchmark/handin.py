@@ -39,11 +39,12 @@ def handed_in(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> t
     """
     path = Path(folder)
     found = examined(path, known)
+    wrong = [*found.wrong]
     if found.meta is not None:
-        found.wrong.extend((*_meta_faults(path, found.meta), *_input_faults(path, found.meta)))
+        wrong += [*_meta_faults(path, found.meta), *_input_faults(path, found.meta)]
     for number, answer in found.answers.items():
-        found.wrong.extend(_answer_faults(path, known[number], answer, found.tables.get(number)))
-    return (None if found.wrong else found.submission(known)), found.wrong
+        wrong += _answer_faults(path, known[number], answer, found.tables.get(number))
+    return (None if wrong else found.submission(known)), wrong
 
 
 def _meta_faults(folder: Path, meta: Meta) -> Iterator[str]:

@@ -1,5 +1,7 @@
 """Quantities of the benchmark, taken from a result: what a target is, and what a method's values are."""
 
+import math
+from collections import defaultdict
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -9,6 +11,7 @@ from partialslip.benchmark.problem import Problem
 from partialslip.benchmark.submission import Answer
 from partialslip.fatigue import assess
 from partialslip.result import Result
+from partialslip.result.peak import peak_error
 from partialslip.scene import Scene
 from partialslip.units import Dimension
 
@@ -28,15 +31,15 @@ class Quantity(NamedTuple):
         Size to which an error is relative, in the same unit.
     group : str
         One of :data:`GROUPS`.
-    estimate : str
-        Key of the method's error estimate that holds for it; empty if none does.
+    error : float
+        The method's own estimate of its error, in the scale; NaN if there is none.
     """
 
     value: float
     unit: Dimension
     scale: float
     group: str
-    estimate: str
+    error: float
 
 
 def quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float | None = None) -> dict[str, Quantity]:
@@ -81,37 +84,43 @@ def answer_of(problem: Problem, result: Result) -> Answer:
 def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float) -> Iterator[tuple[str, Quantity]]:
     f, of = scene.friction.f, result.traction
     p0 = 2 * scene.P / (np.pi * a)
-    yield "a", Quantity(result.a, "m", a, "contact", "a")
+    own = defaultdict(lambda: math.nan, result.estimate)
+    yield "a", Quantity(result.a, "m", a, "contact", own["a"])
     if result.contact_ends:
         names = ("left_1", "right_1", "left_2", "right_2")
         for name, end in zip(names, (end for ends in result.contact_ends for end in ends), strict=True):
-            yield name, Quantity(end, "m", a, "contact", name.partition("_")[0])
+            yield name, Quantity(end, "m", a, "contact", own[name.partition("_")[0]])
     for key in ("m", "n"):
         end = getattr(result, key)
         if end is not None and key not in result.undetermined and result.regime != "ratchets":
-            yield key, Quantity(end, "m", a, "stick", key)
+            yield key, Quantity(end, "m", a, "stick", own[key])
     x = a * np.array(places)
     at = of.at(x)
-    yield "p_max", Quantity(of.p_max, "Pa", p0, "tractions", "p")
+    yield "p_max", Quantity(of.p_max, "Pa", p0, "tractions", own["p"])
     for place, value in zip(places, at.p.tolist(), strict=True):
-        yield f"p@{place:g}", Quantity(value, "Pa", p0, "tractions", "p")
+        yield f"p@{place:g}", Quantity(value, "Pa", p0, "tractions", own["p"])
     if not f or not np.any(at.dq) or result.regime == "ratchets":
         return
     if "q" not in result.undetermined:
         for place, value in zip(places, at.dq.tolist(), strict=True):
-            yield f"dq@{place:g}", Quantity(value, "Pa", 2 * f * p0, "tractions", "q")
+            yield f"dq@{place:g}", Quantity(value, "Pa", 2 * f * p0, "tractions", own["q"])
     if at.levels and "q1" not in result.undetermined:
         for key, values in zip(("q1", "q2"), at.levels, strict=True):
             for place, value in zip(places, values.tolist(), strict=True):
-                yield f"{key}@{place:g}", Quantity(value, "Pa", f * p0, "levels", key)
+                yield f"{key}@{place:g}", Quantity(value, "Pa", f * p0, "levels", own[key])
     if result.slip and not {"q", "m"} & set(result.undetermined):
         most = float(np.abs(result.slip.slip).max())
         if most > 0:
-            yield "slip", Quantity(most, "m", most, "slip", "q")
-            yield "dissipated", Quantity(result.slip.dissipated, "J/m", result.slip.dissipated, "slip", "q")
+            yield "slip", Quantity(most, "m", most, "slip", own["q"])
+            yield "dissipated", Quantity(result.slip.dissipated, "J/m", result.slip.dissipated, "slip", own["q"])
     if result.surface:
-        yield "sigma_xx", Quantity(result.surface.largest[1], "Pa", p0, "stress", "q")
+        off = peak_error(result)
+        error = math.nan if off is None else off / p0
+        yield "sigma_xx", Quantity(result.surface.largest[1], "Pa", p0, "stress", error)
     if result.stress_at and scene.fatigue.distance:
         rating = assess(scene, result, ["swt"]).ratings["swt"]
-        for key, spot in (("swt", rating.surface), ("swt_line", rating.averages["line"])):
-            yield key, Quantity(spot.value, "Pa", spot.value, "stress", "q")
+        errors = rating.errors or (math.nan, math.nan)
+        for key, spot, error in zip(
+            ("swt", "swt_line"), (rating.surface, rating.averages["line"]), errors, strict=True
+        ):
+            yield key, Quantity(spot.value, "Pa", spot.value, "stress", error)

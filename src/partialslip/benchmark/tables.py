@@ -59,7 +59,7 @@ def read_table(problem: Problem, file: str | os.PathLike[str], columns: Mapping[
     errors = {}
     for key, each in found.items():
         apart = [abs(half[key].value - each.value) / each.scale if key in half else float("inf") for half in halves]
-        errors[key] = max(result.estimate.get(each.estimate, 0.0), *apart)
+        errors[key] = max(each.error if each.error > 0 else 0.0, *apart)  # it may be NaN
     return TableValues({key: each.value for key, each in found.items()}, errors)
 
 

@@ -58,6 +58,16 @@ class _Parser(argparse.ArgumentParser):
             self.error(f"unknown argument {unknown[0]}" + (f": did you mean {near[0]}?" if near else ""))
         return found, unknown
 
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse a value that is none of the choices, and tell which one was meant."""
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            from partialslip.scene.reading import meant
+
+            error.message += meant(value, action.choices or ())
+            raise
+
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
 

@@ -146,7 +146,9 @@ def methods_of(text: str, known: Collection[str]) -> list[str]:
     methods = [method.strip() for method in text.split(",")]
     for method in methods:
         if method not in known:
-            raise InputError(f"--with {method!r}: must be of {', '.join(known)}")
+            from partialslip.scene.reading import meant
+
+            raise InputError(f"--with {method!r}: must be of {', '.join(known)}{meant(method, known)}")
     return methods
 
 

@@ -1,6 +1,7 @@
 """partialslip page: a live page with sliders for loads and friction."""
 
 import argparse
+from pathlib import Path
 
 import partialslip
 from partialslip.cli.common import Commands, add_out, add_scene, check_output
@@ -16,7 +17,7 @@ def add(commands: Commands) -> None:
         help="make a live page: sliders for loads and friction",
         description="Make one HTML file with sliders for the loads and the friction. The page shows tractions, stick "
         "zone and the point on the stick-zone map. P and its line of action may differ between the load points. The "
-        "page calculates in the browser, without network.",
+        "page calculates in the browser, without network. Finite bodies are left out.",
         examples=["partialslip page", "partialslip page hertz-large-tension --out live"],
     )
     told = "a shipped scene or a TOML file, with a Hertz profile; the sliders start at the scene's loads"
@@ -30,8 +31,12 @@ def _page(options: argparse.Namespace) -> int:
     scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.live import live_page
+    from partialslip.map.files import bodies_left_out
     from partialslip.output.files import write_texts
 
-    text = live_page(scene)
-    name = f"{scene.name}-page"
-    return present(options, "page", name, scene, lambda folder: Findings(write_texts(folder, {"page.html": text})))
+    text, lines = live_page(scene), bodies_left_out(scene, "the page")
+
+    def find(folder: Path) -> Findings:
+        return Findings(write_texts(folder, {"page.html": text}), printed=lines)
+
+    return present(options, "page", f"{scene.name}-page", scene, find)

@@ -17,6 +17,7 @@ from partialslip.cli.common import (
     check_output,
     folder_if_wanted,
     methods_of,
+    naming,
     origin,
     print_long_path,
     print_outcome,
@@ -111,15 +112,16 @@ def _run(options: argparse.Namespace) -> int:
             messages().print(str(price), soft_wrap=True, markup=False)
         print_long_path(scene, chosen)
         with working(scene.name) as tell:
-            outcome = partialslip.run(
-                scene,
-                taken,
-                subsurface=options.fields,
-                stresses=True,
-                progress=tell,
-                start=start,
-                allowance=allowance,
-            )
+            with naming(options.scene):
+                outcome = partialslip.run(
+                    scene,
+                    taken,
+                    subsurface=options.fields,
+                    stresses=True,
+                    progress=tell,
+                    start=start,
+                    allowance=allowance,
+                )
             if getattr(scene.profile, "measured", None):
                 tell("noise of the profile")
                 _ = outcome.noise  # while the console shows what the command is doing

@@ -6,6 +6,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.fatigue.criteria import Criterion
+from partialslip.fatigue.critical_plane import Ruiz
 from partialslip.result import Result
 from partialslip.result.peak import peak_error
 
@@ -15,6 +16,9 @@ _SURFACE = 3.0
 # accuracy: error of averaged stresses in the error of the stresses at the ends of the contact: up to 0.52 in 57
 # such solutions of fem
 _AVERAGED = 0.6
+# accuracy: height of a peak above the largest value at points, in the fall from there to the lower neighbour: 1/8 at
+# most if the peak is a parabola
+_BETWEEN = 0.25
 
 
 class CriterionErrors(NamedTuple):
@@ -45,6 +49,22 @@ def criterion_errors(
     now, *grown = (float(of.at((1.0 + share) * stress).value) for share in (0.0, *errors))
     changed = (abs(then / now - 1) if now else share for then, share in zip(grown, errors, strict=True))
     return CriterionErrors(*(each + beside for each in changed))
+
+
+def ruiz_errors(of: Ruiz, errors: CriterionErrors | None) -> tuple[float, float] | None:
+    """Return the relative errors of F1 and F2 for the ``errors`` of the stresses, to which shear and slip are
+    proportional, and for points that miss the peaks."""
+    if errors is None:
+        return None
+    grown = (1.0 + errors.surface) ** 3 - 1
+    return grown + _missed(of.work), grown + _missed(of.product)
+
+
+def _missed(values: Array) -> float:
+    """Relative height by which the peak between points may exceed the largest of the ``values`` at the points."""
+    peak = int(values.argmax())
+    beside = values[max(peak - 1, 0) : peak + 2].min()
+    return float(_BETWEEN * (1 - beside / values[peak])) if values[peak] > 0 else 0.0
 
 
 def _edge_error(result: Result) -> float:

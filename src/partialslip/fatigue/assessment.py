@@ -8,7 +8,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.fatigue.accuracy import CriterionErrors, criterion_errors, errors_of_stresses
+from partialslip.fatigue.accuracy import CriterionErrors, criterion_errors, errors_of_stresses, ruiz_errors
 from partialslip.fatigue.criteria import RUIZ, Criterion, beyond, check_distance, chosen, criterion
 from partialslip.fatigue.critical_plane import Ruiz, ruiz
 from partialslip.fatigue.cycle import settled_criteria, stress_path, unknown_between
@@ -198,7 +198,7 @@ def assess(
         body,
         phases,
         ratings,
-        _ruiz(result, at) if ruiz_asked else None,
+        _ruiz(result, at, errors) if ruiz_asked else None,
         edges(scene, result),
         (f"load points 1 and 2 only: {unknown}",) if unknown else (),
     )
@@ -241,6 +241,9 @@ def _rated(
     return Rating(of, surface, max(surface, peak, key=lambda each: each.value), averages, change, off)
 
 
-def _ruiz(result: Result, path: Callable[[Array, Array], Array]) -> Ruiz:
+def _ruiz(result: Result, path: Callable[[Array, Array], Array], errors: CriterionErrors | None) -> Ruiz:
+    """Ruiz's parameters from the points of the slip and the ends of the contact, where the tension is largest."""
     assert result.slip
-    return ruiz(result, path(result.slip.x, np.zeros(1))[:, 0])
+    x = np.union1d(result.slip.x, result.ends)
+    found = ruiz(result, path(x, np.zeros(1))[:, 0], x)
+    return found._replace(errors=ruiz_errors(found, errors))

@@ -19,6 +19,7 @@ from partialslip.fatigue.critical_plane import (
 from partialslip.fatigue.invariants import crossland, dang_van
 from partialslip.fatigue.planes import Critical, PlaneMeasure, critical_plane
 from partialslip.scene import Body, Elastic, Scene
+from partialslip.scene.reading import meant
 from partialslip.units import Dimension
 
 
@@ -89,7 +90,7 @@ def chosen(scene: Scene, names: Iterable[str] | None) -> list[str]:
     found = {name.lower() if isinstance(name, str) else name: name for name in names}
     for name, given in found.items():
         if name not in CRITERIA:
-            raise InputError(f"criterion {given!r}: must be of {', '.join(CRITERIA)}")
+            raise InputError(f"criterion {given!r}: must be of {', '.join(CRITERIA)}{meant(str(given), CRITERIA)}")
         if missing := _missing(scene, name):
             raise InputError(f"fatigue.{missing[0]}: missing; the criterion {name} needs it")
     return list(found)

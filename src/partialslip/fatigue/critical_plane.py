@@ -182,6 +182,10 @@ class Ruiz(NamedTuple):
         Points of the contact, m.
     product : (k,) array
         sigma_T tau delta at these points, Pa^2 m.
+    work : (k,) array
+        tau delta at these points, Pa m.
+    errors : (float, float) or None
+        Estimated relative errors of F1 and F2; None if they are not known.
     """
 
     F1: float
@@ -190,9 +194,11 @@ class Ruiz(NamedTuple):
     x2: float
     x: Array
     product: Array
+    work: Array
+    errors: tuple[float, float] | None = None
 
 
-def ruiz(result: Result, sigma: Array) -> Ruiz:
+def ruiz(result: Result, sigma: Array, x: Array | None = None) -> Ruiz:
     """Return Ruiz's parameters F1 and F2 of a result with slip.
 
     sigma_T is the largest tangential stress sigma_xx of the surface during the cycle (0 under compression), tau the
@@ -204,7 +210,9 @@ def ruiz(result: Result, sigma: Array) -> Ruiz:
     result : Result
         With ``slip``.
     sigma : (s, k) array
-        sigma_xx along the load path at the points ``result.slip.x``, Pa.
+        sigma_xx along the load path at the points ``x``, Pa.
+    x : (k,) array, optional
+        Points of the contact, m; default: those of ``result.slip``.
 
     References
     ----------
@@ -212,9 +220,12 @@ def ruiz(result: Result, sigma: Array) -> Ruiz:
     24 (1984) 208-217.
     """
     assert result.slip
-    x = result.slip.x
+    x = result.slip.x if x is None else x
     tension = np.maximum(sigma.max(axis=0), 0.0)
-    work = np.abs(result.traction.at(x).dq) / 2 * np.abs(result.slip.slip) / 2
+    delta = np.abs(np.interp(x, result.slip.x, result.slip.slip)) / 2
+    work = np.abs(result.traction.at(x).dq) / 2 * delta
     product = tension * work
     most, both = int(work.argmax()), int(product.argmax())
-    return Ruiz(float(tension.max() * work[most]), float(product[both]), float(x[most]), float(x[both]), x, product)
+    return Ruiz(
+        float(tension.max() * work[most]), float(product[both]), float(x[most]), float(x[both]), x, product, work
+    )

@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.report.answer import estimate_of
 from partialslip.result import Result
 from partialslip.scene import Scene
 
@@ -95,7 +96,7 @@ def edges(scene: Scene, result: Result, adhered: Result | None = None) -> tuple[
         if adhered is not None:
             K_T: Coefficient | None = _of_adhered(adhered, side, inwards, marks)
         else:
-            K_T = None if scene.finite else _of_half_planes(scene, left, right, -inwards)
+            K_T = None if scene.finite else _of_half_planes(scene, result, -inwards)
         slip, K_S = None, None
         if stick is not None:
             slip = float(abs(stick[side] - end))
@@ -123,13 +124,18 @@ def _reserve(result: Result, f: Array, x: Array) -> Array:
     return f * found.p - np.abs(found.dq) / 2
 
 
-def _of_half_planes(scene: Scene, left: float, right: float, side: float) -> Coefficient:
-    """K_T of half-planes: dq = (dQ/pi + s dsigma/4 + dslope (s^2 - a^2/2)/4)/sqrt(a^2 - s^2), s from the middle."""
-    a, middle = (right - left) / 2, (right + left) / 2
-    load = scene.load
-    tension = load.dsigma + load.dslope * middle
-    force = load.dQ / np.pi + side * a * tension / 4 + a**2 * load.dslope / 8
-    return Coefficient(float(force / np.sqrt(2 * a)), 0.0)
+def _of_half_planes(scene: Scene, result: Result, side: float) -> Coefficient:
+    """K_T of half-planes: dq = (dQ/pi + s dsigma/4 + dslope (s^2 - a^2/2)/4)/sqrt(a^2 - s^2), s from the middle. Its
+    error is that of the half-width a of the ``result``."""
+    (left, right), load = result.ends[1], scene.load
+    tension = load.dsigma + load.dslope * (right + left) / 2
+
+    def K_T(a: float) -> float:
+        force = load.dQ / np.pi + side * a * tension / 4 + a**2 * load.dslope / 8
+        return float(force / np.sqrt(2 * a))
+
+    a = (right - left) / 2
+    return Coefficient(K_T(a), abs(K_T(a * (1 + estimate_of(result, "a"))) - K_T(a)))
 
 
 def _fitted(at: Callable[[Array], Array], end: float, inwards: float, marks: Array, power: float) -> Coefficient:

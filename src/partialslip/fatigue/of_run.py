@@ -3,8 +3,9 @@
 from partialslip.errors import InputError
 from partialslip.fatigue.spots import SIGMA, HotSpot, hot_spots
 from partialslip.fatigue.tables import unit_of_places
-from partialslip.report.answer import HALF_PLANES, scale, with_error
+from partialslip.report.answer import first_knowing, scale, with_error
 from partialslip.report.page import Section
+from partialslip.report.rows import whose
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Fatigue
@@ -16,27 +17,23 @@ _HEADINGS = ("lower body", "unit", "value", "x/a")
 def criteria_sections(run: Run) -> list[Section]:
     """Return the section of hot spots of ``run``: of the answering result, or the first other that holds and knows its
     stresses. Empty without a table ``fatigue`` in the scene, and without such a result."""
-    if run.scene.fatigue == Fatigue() or not (result := _known(run)):
+    known = first_knowing(run, lambda result: result.stress_at is not None and not result.path_dependent)
+    if run.scene.fatigue == Fatigue() or not known:
         return []
+    result = known.result
     try:
         found = hot_spots(run.scene, result)
     except InputError as error:
         return [Section(_TITLE, [f"Not known: {error}."])]
     distance = run.scene.fatigue.distance
     averages = f" Averages are over {run.scene.units.length(distance)} from the surface." if distance else ""
-    line = f"By {result.method}.{averages} partialslip fatigue has the critical planes and figures."
+    line = f"By {whose(run, result.method)}.{averages} partialslip fatigue has the critical planes and figures."
     exponent, unit = unit_of_places(run.scene, result.a)
     rows = [
         (*_row(run, result, key, spot, found.get(key.partition(".")[0], spot).value), f"{spot.x / 10.0**exponent:.4g}")
         for key, spot in found.items()
     ]
     return [Section(_TITLE, [line], headings=(*_HEADINGS, f"x, {unit}"), rows=rows, words=(1,))]
-
-
-def _known(run: Run) -> Result | None:
-    names = dict.fromkeys([run.answering, *run.results])
-    holds = (name for name in names if not (run.scene.finite and name in HALF_PLANES))
-    return next((run[name] for name in holds if run[name].stress_at and not run[name].path_dependent), None)
 
 
 def _row(run: Run, result: Result, key: str, spot: HotSpot, largest: float) -> tuple[str, ...]:

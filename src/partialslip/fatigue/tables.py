@@ -18,11 +18,13 @@ from partialslip.plan import plan
 from partialslip.report.answer import answer_heading, answers, scale, with_error
 from partialslip.run import Run
 from partialslip.scene import Scene
-from partialslip.units import SI, Dimension
+from partialslip.scene.plausible import implausible
+from partialslip.units import SI, Dimension, Units
 
 HeadedRows = tuple[Sequence[str], Sequence[Sequence[str]]]
 _SAME = 1e-9  # display: relative change that is none
 _PLACE = 5  # display: significant digits of a place
+_POWER = 6  # display: powers of ten from which on numbers have an exponent
 _CURVE = 48  # display: intervals of curves between points where stresses may have cusps, and of depth
 
 
@@ -128,20 +130,33 @@ def edge_units(found: Assessment) -> str:
 
 
 def assessment_notes(found: Assessment) -> list[str]:
-    """Return Ruiz's parameters, why errors are not known, and remarks, also of the method, as lines."""
+    """Return Ruiz's parameters, why errors are not known, and remarks, also on the scene and by the method, as
+    lines."""
     lines, result = [], found.result
     if found.ruiz:
-        text, (exponent, unit) = found.scene.units.labelled, unit_of_places(found.scene, found.result.a)
+        exponent, unit = unit_of_places(found.scene, found.result.a)
+        off, units = found.ruiz.errors or (math.nan, math.nan), found.scene.units
         first, second = (
             f"x = {x / result.a:.4f} a, {x / 10.0**exponent:.{_PLACE}g} {unit}" for x in (found.ruiz.x1, found.ruiz.x2)
         )
         lines += [
-            f"ruiz F1 = {text(found.ruiz.F1, 'Pa^2 m')}, tau delta largest at {first}",
-            f"ruiz F2 = {text(found.ruiz.F2, 'Pa^2 m')} at {second}",
+            f"ruiz F1 = {_of_ruiz(found.ruiz.F1, off[0], units)}, tau delta largest at {first}",
+            f"ruiz F2 = {_of_ruiz(found.ruiz.F2, off[1], units)} at {second}",
         ]
-    if any(rating.errors is None for rating in found.ratings.values()):
+    without = any(rating.errors is None for rating in found.ratings.values())
+    if without or (found.ruiz and found.ruiz.errors is None):
         lines.append(f"errors of the criteria are not known: {_without_errors(found)}")
-    return [*lines, *found.notes, *(f"{result.method}: {note}" for note in result.notes)]
+    return [*lines, *implausible(found.scene), *found.notes, *(f"{result.method}: {note}" for note in result.notes)]
+
+
+def _of_ruiz(value: float, error: float, units: Units) -> str:
+    """F1 or F2 (Pa^2 m), with its relative ``error``, as text in ``units``."""
+    value = units.from_si(value, "Pa^2 m")
+    power = math.floor(math.log10(value)) if value else 0
+    power = power if abs(power) >= _POWER else 0
+    text = with_error(value, error * value, power)
+    text = f"({text})" if power and " " in text else text
+    return text + (f"e{power:+03d}" if power else "") + f" {units.label('Pa^2 m')}"
 
 
 def _without_errors(found: Assessment) -> str:
@@ -157,7 +172,7 @@ def _without_errors(found: Assessment) -> str:
 
 def assessment_record(found: Assessment) -> dict[str, Any]:
     """Return the assessment as plain data, in SI units; angles in rad."""
-    ruiz = found.ruiz and {key: getattr(found.ruiz, key) for key in ("F1", "F2", "x1", "x2")}
+    ruiz = found.ruiz and {key: getattr(found.ruiz, key) for key in ("F1", "F2", "x1", "x2", "errors")}
     return {
         "scene": found.scene.name,
         "method": found.result.method,

@@ -13,6 +13,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_table import table
+from partialslip.map.files import bodies_left_out
 from partialslip.map.grid import MapLine, stick_map
 from partialslip.output.labels import label_places
 from partialslip.output.page import template
@@ -24,7 +25,6 @@ _NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88,
 _SOLVED = {  # fields that the page takes into account; any other that is given is refused
     "profile": ("R",),
     "load": ("P", "a", "p0", "M", "e", "Q", "sigma", "cycles", "steps"),
-    "bodies": (),
     "effects": (),
 }
 _ROUNDED = 5  # accuracy: decimals of the map's lines
@@ -36,18 +36,22 @@ _TOP, _HIGHEST = 10.0, 40.0
 def live_page(scene: Scene) -> str:
     """Return the live page of ``scene`` as HTML: sliders for the loads, tractions and stick zone.
 
-    The sliders start at the loads of the scene. P and its line of action may differ between the load points.
+    The sliders start at the loads of the scene. P and its line of action may differ between the load points. Finite
+    bodies are left out, and the page says so: it shows half-planes under the same loads.
 
     Raises
     ------
     InputError
-        If the profile is not ``hertz``, a body is finite, the bodies' materials differ, an effect is forced on or off,
-        there is no friction, or the loads are out of phase.
+        If the profile is not ``hertz``, the bodies' materials differ, an effect is forced on or off, displacements
+        drive the bodies, there is no friction, or the loads are out of phase.
     """
     _check(scene)
     return (
         template("partialslip.live", "live.html").render(
-            data=_data(scene), units=scene.units, version=version("partialslip")
+            data=_data(scene),
+            left_out=bodies_left_out(scene, "the page"),
+            units=scene.units,
+            version=version("partialslip"),
         )
         + "\n"
     )

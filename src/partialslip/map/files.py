@@ -10,6 +10,7 @@ from partialslip.map.varying import VaryingMap
 from partialslip.map.varying_figure import varying_svg
 from partialslip.output.files import csv_text, write_texts
 from partialslip.report import rows
+from partialslip.scene import Scene
 
 
 def write_map(data: StickMap | VaryingMap, folder: Path) -> list[Path]:
@@ -62,6 +63,12 @@ def varying_csv(data: VaryingMap) -> str:
     return csv_text(list(columns), zip(*(column.ravel().tolist() for column in columns.values()), strict=True))
 
 
+def bodies_left_out(scene: Scene, what: str) -> list[str]:
+    """Return that ``what`` shows half-planes under the loads of ``scene``, as a line; empty without finite bodies."""
+    finite = ", ".join(key for key, _ in scene.bodies)
+    return [f"{what} shows half-planes: {finite} left out"] if finite else []
+
+
 def place(data: StickMap | VaryingMap) -> list[str]:
     """Return regime, stick zone and limits of the scene of the map ``data`` as lines of text; empty without a scene."""
     if data.scene is None:
@@ -70,8 +77,7 @@ def place(data: StickMap | VaryingMap) -> list[str]:
     if point is None:
         missing = data.missing if isinstance(data, StickMap) else "the contact slides: |Q| >= f P at a load point"
         return [f"{name}: not on the map: {missing}"]
-    finite = ", ".join(key for key, _ in data.scene.bodies)
-    left_out = [f"the map shows half-planes: {finite} left out"] if finite else []
+    left_out = bodies_left_out(data.scene, "the map")
     exact = point.exact
     if point.missing:
         return [f"{name}: {point.missing}", *left_out]

@@ -69,7 +69,7 @@ HALF_PLANES = ("exact", "march")  # methods that know no finite bodies
 _EXACT = ("exact", "march")  # what these do not estimate (march: the pressure) they know to rounding
 
 
-class _Known(NamedTuple):
+class Known(NamedTuple):
     """The ``result`` that a value is taken from, and the name of its ``method`` if it is not the one of the answer."""
 
     result: Result
@@ -102,7 +102,7 @@ def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
     if result.m is None or result.n is None:
         yield "stick zone", "none" + (f": {result.undetermined['m']}" if "m" in result.undetermined else "")
         return
-    errors = [_estimate(result, key) * result.a for key in "mn"]
+    errors = [estimate_of(result, key) * result.a for key in "mn"]
     exponent, label = _unit(run, result.a, "m")
     ends = [with_error(end, error, exponent) for end, error in zip((-result.m, result.n), errors, strict=True)]
     yield "stick zone", f"[{ends[0]}, {ends[1]}] {label}"
@@ -145,7 +145,7 @@ def _scatter(deviations: Mapping[str, float | None]) -> str:
 
 
 def _contact(run: Run, result: Result) -> Iterator[tuple[str, str]]:
-    error = _estimate(result, "a")
+    error = estimate_of(result, "a")
     exponent, label = _unit(run, result.a, "m")
     yield "a", f"{with_error(result.a, error * result.a, exponent)} {label}"
     if not run.scene.even or run.scene.presses_anew:
@@ -160,7 +160,7 @@ def _shears(run: Run) -> Iterator[tuple[str, str]]:
     """Yield the largest shear at both load points; out of phase, where it may be largest elsewhere, in the cycle."""
     if run.scene.friction.f == 0:
         return
-    known = _first(run, lambda result: result.traction.q1 is not None and result.traction.q2 is not None)
+    known = first_knowing(run, lambda result: result.traction.q1 is not None and result.traction.q2 is not None)
     if known and not run.scene.load.in_phase:
         traction = known.result.traction
         largest = max(float(np.abs(q).max()) for q in (traction.q1, traction.q2) if q is not None)
@@ -176,7 +176,7 @@ def _shears(run: Run) -> Iterator[tuple[str, str]]:
 
 def _stresses(run: Run) -> Iterator[tuple[str, str]]:
     """Yield the largest sigma_xx along the surface of the lower body, and its place, at both load points."""
-    known = _first(run, lambda result: result.surface is not None)
+    known = first_knowing(run, lambda result: result.surface is not None)
     if not known or not known.result.surface:
         return
     surface, off = known.result.surface, peak_error(known.result)
@@ -185,7 +185,7 @@ def _stresses(run: Run) -> Iterator[tuple[str, str]]:
         index, last = int(sigma.argmax()), len(sigma) - 1
         place = float(surface.x[index])
         beside = np.abs(surface.x[[max(index - 1, 0), min(index + 1, last)]] - place).max()
-        error = _estimate(known.result, "a") * known.result.a if _at_an_end(place, known.result) else float(beside)
+        error = estimate_of(known.result, "a") * known.result.a if _at_an_end(place, known.result) else float(beside)
         far = index in (0, last)
         where = "away from the contact" if far else f"at x = {with_error(place, error, exponent)} {label}"
         power, unit = _unit(run, float(sigma.max()), "Pa")
@@ -195,7 +195,7 @@ def _stresses(run: Run) -> Iterator[tuple[str, str]]:
 
 def _plates(run: Run) -> Iterator[tuple[str, str]]:
     """Yield what moves the plates of two finite bodies along x, by how much, and what they resist per unit depth."""
-    known = _first(run, lambda result: result.plates is not None)
+    known = first_knowing(run, lambda result: result.plates is not None)
     if not known or not (plates := known.result.plates):
         return
     error, off = (math.nan if each is None else each for each in (plates.error, plates.displacement_error))
@@ -219,7 +219,7 @@ def _plates(run: Run) -> Iterator[tuple[str, str]]:
 
 def _right_grip(run: Run) -> Iterator[tuple[str, str]]:
     """Yield the force on the plate that holds the right side of the lower body, and its share of Q."""
-    known = _first(run, lambda result: result.right_grip is not None)
+    known = first_knowing(run, lambda result: result.right_grip is not None)
     if not known or (forces := known.result.right_grip) is None:
         return
     exponent, label = _unit(run, float(np.abs(forces).max()), "N/m")
@@ -229,7 +229,7 @@ def _right_grip(run: Run) -> Iterator[tuple[str, str]]:
     yield "right grip", f"{borne} {label} besides sigma at load points 1, 2{share}{_by(known)}"
 
 
-def _first(run: Run, knows: Callable[[Result], bool]) -> _Known | None:
+def first_knowing(run: Run, knows: Callable[[Result], bool]) -> Known | None:
     """Return the first result that ``knows`` a value and claims to hold, the answering one before all others; None if
     none does. Half-planes do not hold for finite bodies."""
     best, finite = run.answering, run.scene.finite
@@ -238,7 +238,7 @@ def _first(run: Run, knows: Callable[[Result], bool]) -> _Known | None:
     ]
     for name in dict.fromkeys([best, *others]):
         if knows(run.results[name]):
-            return _Known(run.results[name], "" if name == best else name)
+            return Known(run.results[name], "" if name == best else name)
     return None
 
 
@@ -247,7 +247,7 @@ def _at_an_end(x: float, result: Result) -> bool:
     return bool(np.isclose(x, np.ravel(result.ends), rtol=0.0, atol=_ROUNDING * result.a).any())
 
 
-def _by(known: _Known) -> str:
+def _by(known: Known) -> str:
     return f" ({known.method})" if known.method else ""
 
 
@@ -257,17 +257,17 @@ def _why(run: Run, key: str) -> str:
     return next(reasons, "no method of this run finds it")
 
 
-def _stress(run: Run, value: float, known: _Known, key: str) -> str:
+def _stress(run: Run, value: float, known: Known, key: str) -> str:
     """Return a stress as text.
 
     Beside an end of the stick zone q has a kink like a square root. An error that is spread over a length h is as high
     as the square root of h there, and adds h to the norm: the largest value is known to the root of the norm's error.
     """
     exponent, label = _unit(run, value, "Pa")
-    return f"{with_error(value, math.sqrt(_estimate(known.result, key)) * abs(value), exponent)} {label}"
+    return f"{with_error(value, math.sqrt(estimate_of(known.result, key)) * abs(value), exponent)} {label}"
 
 
-def _estimate(result: Result, key: str) -> float:
+def estimate_of(result: Result, key: str) -> float:
     """Return the method's own estimate of an error, NaN if there is none; that of q for q1 and q2 that have none, and
     that of a for m and n where all of the contact sticks."""
     instead = {"q1": "q", "q2": "q"} | ({"m": "a", "n": "a"} if result.regime == "stuck" else {})

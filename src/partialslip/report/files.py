@@ -29,7 +29,8 @@ def write_run(
 
     ``made`` is the origin of the run (default: now, by a call from Python). With ``pdf``, also write report.pdf. The
     report has further ``sections``.
-    Where the plates of two finite bodies are known, also write loop.csv: displacement and Q in the steady cycle.
+    Where the plates of two finite bodies are known, also write loop.csv: displacement, Q and load points of the steady
+    cycle.
     If fields inside the bodies were asked for, also write surface.csv, bodies.vtu and mesh.msh; lower.msh and upper.msh
     instead of mesh.msh if the bodies are not mirror images.
 

@@ -20,6 +20,7 @@ _FORCE: Dimension = "N/m"
 _SIZE = 5.2, 3.0  # display: inches
 _TICKS = 3  # display: most intervals of an axis: numbers are long
 _OPEN = 1e-6  # display: least area of a loop that is drawn, in that of the box around it
+_ROUNDING = 1e-9  # accuracy: of the range of Q
 _FEWEST = 8  # display: steps of a cycle whose loop is drawn: the area of fewer tells little
 _ENOUGH = 16  # display: load steps between load points from which the area is not worth a remark
 
@@ -30,14 +31,30 @@ def _known(run: Run) -> tuple[Result, Plates] | None:
 
 
 def loop_csv(run: Run) -> str:
-    """Return the loop as CSV, one row per point, in the scene's units; empty if no method knows the plates."""
+    """Return the loop as CSV, one row per point, in the scene's units, with the number of the load point where it is
+    at one; empty if no method knows the plates."""
     known, units = _known(run), run.scene.units
     if not known:
         return ""
     moved, Q = known[1].loop.T
-    headings = [units.heading("displacement", _LENGTH), units.heading("Q", _FORCE)]
-    columns = units.from_si(moved, _LENGTH).tolist(), units.from_si(Q, _FORCE).tolist()
+    headings = [units.heading("displacement", _LENGTH), units.heading("Q", _FORCE), "load point"]
+    columns = units.from_si(moved, _LENGTH).tolist(), units.from_si(Q, _FORCE).tolist(), _load_points(known[1])
     return csv_text(headings, zip(*columns, strict=True))
+
+
+def _load_points(plates: Plates) -> list[int | str]:
+    """Return the numbers of the load points, in the order of ``load.Q``, by point of the loop; empty between them, and
+    everywhere if Q does not tell them: it is the same at successive load points."""
+    Q, at_points = plates.loop[:, 1], plates.at_points
+    rounding, row = _ROUNDING * np.ptp(at_points), 0
+    numbers: list[int | str] = [len(at_points), *[""] * (len(Q) - 1)]
+    for number, force in enumerate(at_points, start=1):
+        there = np.flatnonzero(np.abs(Q[row + 1 :] - force) <= rounding)
+        if abs(Q[row] - force) <= rounding or not len(there):
+            return [""] * len(Q)
+        row += 1 + int(there[0])
+        numbers[row] = number
+    return numbers
 
 
 def loop_remark(run: Run) -> str:

@@ -55,7 +55,7 @@ def run_page(run: Run, made: Made, sections: Sequence[Section] = ()) -> str:
         answer=answer,
         figure=traction_svg(run, errors=False),
         errors=error_svg(run),
-        amounts=amounts(run.results, run.scene.units),
+        amounts=amounts({rows.whose(run, name): each for name, each in run.results.items()}, run.scene.units),
         levels=levels_svg(run),
         sections=sections,
         plates={"figure": loop_svg(run), "rows": loop_rows(run), "remark": loop_remark(run)},

@@ -42,6 +42,7 @@ _MEANING = {
 }  # fmt: skip
 _IN_A = ("fem.accuracy", "fem.size", "fem.width")  # settings in contact half-widths
 _WORDS = {Outcome.PASSED: "ok", Outcome.MISSED: "MISSED", Outcome.NOT_JUDGED: "not judged"}
+_SLIDES = "the contact slides as a whole, so there is no stick zone to compare"
 _EVEN = 1e-4  # display: of a: a contact whose middle is nearer to x = 0 is even, to the error of elements
 _DIGITS, _MOST = 7, 10  # display: decimals of values: the usual number, and the largest if the error is smaller
 
@@ -55,6 +56,11 @@ def beside_half_planes(run: Run, name: str) -> bool:
 def shown_half_planes(run: Run) -> bool:
     """Return whether any method of ``run`` stands :func:`beside_half_planes`."""
     return any(beside_half_planes(run, name) for name in run.comparisons)
+
+
+def whose(run: Run, name: str) -> str:
+    """Return whose values those of method ``name`` of ``run`` are: half-planes are named where bodies are finite."""
+    return f"half-planes ({name})" if run.scene.finite and name in HALF_PLANES else name
 
 
 def error_headings(run: Run, name: str) -> list[str]:
@@ -121,14 +127,13 @@ def units(run: Run) -> str:
     reference, scene, text = run.results[run.reference or ""], run.scene, run.scene.units.text
     own = run.results[run.answering]
     above = f" (m, n above: in a of {own.method})" if own.m is not None else ""
-    whose = f"half-planes ({run.reference})" if scene.finite and run.reference in HALF_PLANES else run.reference
     parts = {
         "a": scene.units.length(reference.a) + above if run.reference != run.answering else "",
         "p0": text(reference.p0, "Pa", 6) if run.reference != run.answering else "",
         "f p0": text(scene.friction.f * reference.p0, "Pa", 6) if scene.friction.f else "",
         "P": text(scene.P, "N/m", 6),
     }
-    return f"{whose}: " + ", ".join(f"{key} = {size}" for key, size in parts.items() if size)
+    return f"{whose(run, run.reference or '')}: " + ", ".join(f"{key} = {size}" for key, size in parts.items() if size)
 
 
 def unjudged(comparison: Comparison) -> list[str]:
@@ -162,6 +167,7 @@ def verdict_lines(run: Run) -> tuple[str, ...]:
     reasons = {
         "finite bodies": scene.finite,
         "unlike bodies": not scene.material.alike,
+        _SLIDES: not run.comparisons and run[run.answering].regime == "sliding",
         "nothing to compare with": not run.comparisons,
         "the element size was given": scene.fem.size is not None,
     }

@@ -15,6 +15,7 @@ _SLOPE = 1e-7, 0.3  # limit: a/R: beyond these the surfaces are rough beside it,
 _STRAIN = 0.1  # limit: of bulk tension over E, beyond what stays elastic
 _WIDEST = 0.5  # limit: m, half-width of a contact
 _TABLE = 1e-2, 1e2  # limit: reach of the places of friction.x, in a
+_FAR = 100.0  # limit: of fatigue.distance over a: the stresses are none of the contact there
 _HALF_WIDTH = math.sqrt(2 / math.pi)  # of Hertz contact, in the scene's characteristic length
 
 
@@ -43,4 +44,6 @@ def implausible(scene: "Scene") -> tuple[str, ...]:
         reach = max(map(abs, scene.friction.kinks)) / a
         if not _TABLE[0] <= reach <= _TABLE[1]:
             found.append(f"friction.x reaches to {reach:.1g} a: {hint}")
+    if (distance := scene.fatigue.distance or 0.0) > _FAR * a:
+        found.append(line("fatigue.distance", distance, "m", f"{distance / a:.2g} a, far beyond the contact"))
     return tuple(found)

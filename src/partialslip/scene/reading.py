@@ -205,12 +205,27 @@ def _place(kind: type[Table]) -> str:
 
 def _text(scene: str | os.PathLike[str]) -> str:
     path = Path(scene)
-    if path.suffix == ".toml" or _is_file(path):
+    if _is_file(path):
         return read_text(path, _LARGEST_FILE)
     shipped = shipped_scenes()
     if str(scene) in shipped:
         return (resources.files("partialslip.scene") / "shipped" / f"{scene}.toml").read_text("utf-8")
-    raise InputError(f"scene {str(scene)!r}: neither a file nor a shipped scene{_nearest(str(scene), shipped)}")
+    hint = meant(path.name, [*_scene_files(path.parent), *shipped])
+    if path.suffix != ".toml":
+        hint = hint or f"; known are {', '.join(shipped)}"
+        raise InputError(f"scene {str(scene)!r}: neither a file nor a shipped scene{hint}")
+    try:
+        return read_text(path, _LARGEST_FILE)
+    except InputError as error:
+        raise InputError(f"{error}{hint}") from None
+
+
+def _scene_files(folder: Path) -> list[str]:
+    """Return the names of the scene files in ``folder``; none if it cannot be read."""
+    try:
+        return [file.name for file in folder.glob("*.toml") if file.is_file()]
+    except (OSError, ValueError):
+        return []
 
 
 def _is_file(path: Path) -> bool:

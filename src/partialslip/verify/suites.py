@@ -1,6 +1,5 @@
 """Suites of cases by name. Cases are made one at a time, because there may be many."""
 
-import difflib
 import fnmatch
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -11,6 +10,7 @@ from partialslip.errors import InputError
 from partialslip.judge import Bar
 from partialslip.judge.reference import reference
 from partialslip.methods import REFERENCES
+from partialslip.scene.reading import meant
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.catalogue import hard_cases, shipped
 from partialslip.verify.random_scenes import draw, draw_varying, kind_of, varies
@@ -55,8 +55,7 @@ def suite(name: Suite, only: Sequence[str] = ()) -> Makers:
     known = {case.name: case for case in cases}
     for pattern in only:
         if not fnmatch.filter(known, pattern):
-            near = difflib.get_close_matches(pattern, known, n=1)
-            hint = f"; did you mean {near[0]!r}?" if near else "; known are " + ", ".join(known)
+            hint = meant(pattern, known) or "; known are " + ", ".join(known)
             raise InputError(f"--only {pattern!r}: no case of the suite {name}{hint}")
     wanted = [case for case in cases if not only or any(fnmatch.fnmatch(case.name, pattern) for pattern in only)]
     return {case.name: partial(_same, case) for case in wanted}

@@ -134,5 +134,5 @@ def _kept(meta: Meta, problems: Mapping[str, Problem], folder: Path | None) -> d
     """Answers in ``folder`` to the ``problems``, of the code ``meta``. Tables beside them are no part of them."""
     if not folder or not (folder / META).exists() or not files_in(folder, "*.json"):
         return {}
-    kept = examined(folder, read_problems()).as_written()
+    kept = examined(folder, read_problems(), with_tables=False).as_written()
     return {key: answer for key, answer in kept.answers.items() if key in problems} if kept.meta == meta else {}

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _USUAL = "P4, adapted"  # display: the series of the bars, if no other has more points
 _BARS = 4  # display: as many have room
+_SHORT = 30.0  # display: ratio of the ends of an axis up to which there is room for three labels in a decade
 _MARKS = ("o", "s", "^", "v", "D", "<", ">", "p", "h", "X", "P", "*", "d")
 _GREYS = ("0.0", "0.45", "0.65")
 _LINES = ("-", "--", ":", "-.")
@@ -53,6 +54,7 @@ def errors_svg(points: Sequence[CostPoint], peers: Sequence[CostPoint], title: s
                 axes.axvline(exact[0], color="black", lw=0.8, ls=(0, (1, 3)), label="the exact method")
             axes.set(xlabel="CPU s of the process", ylabel=label)
             axes.grid(which="major", color="0.92", lw=0.6)
+        _tick_plainly(panels[0])  # which shares its x axis
         figure.suptitle(title, x=0.01, ha="left", fontsize=10)
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", frameon=False, fontsize=8)
 
@@ -111,7 +113,19 @@ def _draw_growth(axes: "Axes", series: Mapping[str, Sequence[CostPoint]]) -> Non
         label = name if math.isnan(exponent) else f"{name}: {exponent:.2f}"
         axes.loglog(*data.T, next(marks), ms=5, lw=1, label=label, **style)
     axes.set(xlabel="unknowns of the last mesh", ylabel="CPU s of the method")
+    _tick_plainly(axes)
     _put_legend(axes, title="series: exponent")
+
+
+def _tick_plainly(axes: "Axes") -> None:
+    """Label the logarithmic x axis at powers of ten, and at 2 and 5 times these if the axis is short, by plain numbers:
+    labels as 2 x 10^0 are so wide that they touch."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    low, high = axes.get_xlim()
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < _SHORT * low else (1,)))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:,.7g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _put_legend(axes: "Axes", **more: Any) -> None:

@@ -56,9 +56,9 @@ class Axis:
             return f"{self.name} in contact half-widths"
         return self.name if self._dimension == "1" else f"{self.name} in {units.label(self._dimension)}"
 
-    def heading(self, units: Units) -> str:
-        """Heading of a column of a CSV file, with the unit of the values in brackets unless SI."""
-        return f"{self.name} [a of the half-plane]" if self.in_a else units.heading(self.name, self._dimension)
+    def heading(self, units: Units, name: str) -> str:
+        """Heading ``name`` of a column of values in a CSV file, with their unit in brackets unless SI."""
+        return f"{name} [a of the half-plane]" if self.in_a else units.heading(name, self._dimension)
 
     @property
     def _dimension(self) -> Dimension:

@@ -260,7 +260,12 @@ def grid(axes: Sequence[Axis], entries: Iterable[Sized], quantity: str) -> tuple
 def case_table(axes: Sequence[Axis], entries: Iterable[Sized], units: Units) -> tuple[list[str], list[list[Any]]]:
     """Return headings and rows for a CSV file, one row per case, from ``axes`` and ``entries``, in ``units``."""
     figures: dict[str, Dimension] = {"a": "m", "p_max": "Pa", "m": "m", "n": "m"}
-    head = [*(each.heading(units) for each in axes), ACCURACY, *starmap(units.heading, figures.items()), "regime"]
+    head = [
+        *(each.heading(units, each.name) for each in axes),
+        ACCURACY,
+        *starmap(units.heading, figures.items()),
+        "regime",
+    ]
     head += [f"{name}: {key}" for name in (HALF_PLANE, EQUIVALENT) for key in DIFFERENCES]
     head += ["dofs", "cpu_s", "error", "no equivalent"]
     rows: list[list[Any]] = []

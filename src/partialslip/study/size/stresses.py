@@ -130,4 +130,6 @@ def stresses_csv(study: SizeStudy) -> str:
         for name, spots in found.items()
         for key, spot in spots.items()
     ]  # fmt: skip
-    return csv_text(("size", "by", "quantity", "value", "unit", units.heading("x", "m"), "relative error"), rows)
+    return csv_text(
+        (study.heading(), "by", "quantity", "value", "unit", units.heading("x", "m"), "relative error"), rows
+    )

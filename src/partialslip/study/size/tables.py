@@ -68,6 +68,10 @@ class SizeStudy:
         """Name of the axis with its unit."""
         return self.axis.label(self.scene.units)
 
+    def heading(self, name: str = "size") -> str:
+        """Return the heading ``name`` of a column of sizes in a CSV file, with their unit."""
+        return self.axis.heading(self.scene.units, name)
+
     @property
     def trends(self) -> list[Trend]:
         """Trends of all models."""
@@ -176,7 +180,7 @@ def points_csv(study: SizeStudy) -> str:
         for k, size in enumerate(model.size.tolist())
     ]  # fmt: skip
     rows += [("", size, "", "", "", error) for size, error in study.models[0].failed.items()]
-    return csv_text((_BY, "size", "quantity", "difference", "error of the mesh", "point"), rows)
+    return csv_text((_BY, study.heading(), "quantity", "difference", "error of the mesh", "point"), rows)
 
 
 def laws_csv(study: SizeStudy) -> str:
@@ -195,8 +199,8 @@ def laws_csv(study: SizeStudy) -> str:
         for trend in model.trends
         for needed in trend.needed
     ]
-    head = (_BY, "quantity", "C", "k", "k low", "k high", "difference below", "kind", "size", "low", "high")
-    return csv_text(head, rows)
+    sizes = map(study.heading, ("size", "low", "high"))
+    return csv_text((_BY, "quantity", "C", "k", "k low", "k high", "difference below", "kind", *sizes), rows)
 
 
 def marked(difference: float, point: PointStatus) -> str:
