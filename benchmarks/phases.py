@@ -143,7 +143,7 @@ def alone(mesh: Mesh, kappa: float, order: int) -> tuple[int, float]:
     factored, clock = cholmod.symbolic(matrix), Clock()
     with clock.phase("numbers"):
         cholmod.numeric(matrix, factored)
-    return half.stiffness.shape[0], clock.phases["numbers"]
+    return half.unknowns, clock.phases["numbers"]
 
 
 def exponents(rows: Sequence[Row]) -> dict[str, float]:

@@ -18,8 +18,8 @@ from typing import Any
 _ALL_QUADS = {"Algorithm": 8, "RecombineAll": 1, "RecombinationAlgorithm": 3}
 
 # cost: of an element: to which the number of elements up to a point of a line is integrated. By default gmsh integrates
-# to 1e-9, which takes three quarters of the time of a mesh that is graded; with 1e-4 sizes are off by 5e-4 (measured)
-_COUNTED = 1e-4
+# to 1e-9, which takes three quarters of the time of a mesh that is graded; with 1e-6 sizes are off by 5e-5 (measured)
+_COUNTED = 1e-6
 _PIECE = 1 << 20  # cost: bytes of one read from a pipe
 
 
