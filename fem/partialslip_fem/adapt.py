@@ -122,6 +122,7 @@ class _Refinement:
         self.iterations = self.solution.iterations
         self.asked_width = self.width = width  # of the blocks, in contact half-widths: asked for, and of the next mesh
         self.limit = contact_line_limit(problem)
+        self.coarsest = max(part.fineness for part in problem.parts)  # element sizes are those of the coarsest body
         self.goal = Goal.at(accuracy, problem)
         self.size, self.finer, self.least = FIRST_SIZE, goals.FINER, self.goal.growth
         self.size_goal, self.outline = 0.0, self.goal.outline  # of the present mesh
@@ -247,7 +248,6 @@ class _Refinement:
             self.size, self.growth, self.finer = ahead[0]
             arrives = size_reached(self.size, self.size_goal)
             self.outline = OutlineErrors.at(self.goal.accuracy, problem, None if arrives else ahead[0])
-        coarsest = max(part.fineness for part in problem.parts)  # sizes are those of the coarsest body
         planned = NextMesh(self.size, self.growth, self.finer)
         grading = self._grading(self.goal, problem.order, planned)
         self.eased = grading.eased is not None
@@ -274,14 +274,14 @@ class _Refinement:
         self.iterations += solution.iterations
         if not solution.enclosed and max(-solution.reach[0], solution.reach[1]) >= self.limit:
             raise too_narrow(self.problem)
-        in_coarsest = coarsest / problem.parts[0].fineness / a
+        in_coarsest = self.coarsest / problem.parts[0].fineness / a
         at_ends, at_kinks = (
             solution.element_sizes(points) * in_coarsest for points in (solution.zone_ends, np.array(solution.kinks))
         )
         if self.eased:  # beside the point that it is graded to, a mesh that grows fast is a poor one
             beside = np.abs(solution.zone_ends[:, None] - np.array([*grading.sizes])).min(axis=1)
             at_ends = at_ends * (1 + beside / (self.size * a))
-        self.largest_end_element = grading.at(solution.zone_ends).max() * coarsest / a
+        self.largest_end_element = grading.at(solution.zone_ends).max() * self.coarsest / a
         inside = solution.inside(solution.zone_ends)
         self.errors = self.end_errors = self._errors_of_ends(at_ends, inside, at_kinks)
         self.error_at_ends = worst(self._errors_of_ends(at_ends, inside, 0 * at_kinks))
@@ -331,8 +331,7 @@ class _Refinement:
         """Grading of the next ``mesh``, with elements of ``order``, on the way to ``goal``: to the zone ends of the
         present solution, to the profile's kinks, and to kinks of q1 and q2; unless it is ``filled``, without the
         intervals that the ends of the contact sweep."""
-        solution, a = self.solution, self.solution.half_width
-        coarsest = max(part.fineness for part in self.problem.parts)  # sizes are those of the coarsest body
+        solution, a, coarsest = self.solution, self.solution.half_width, self.coarsest
         margin = (0.1 + 2 * mesh.finer * mesh.size) * a  # for safety, and for the error of the present ends
         leftmost, rightmost = solution.reach
         contact = (max(leftmost - margin, -self.limit), min(rightmost + margin, self.limit))
@@ -368,7 +367,7 @@ class _Refinement:
                 refine(point, _OF_HALF)
         if (first := self.problem.touches_first) is not None:
             refine(first, _AT_FIRST * goal.accuracy, _FIRST_SLACK)
-        sizes |= self._at_kinks_of_friction(goal, grading, contact, coarsest)
+        sizes |= self._at_kinks_of_friction(goal, grading)
         # two vertices far nearer to each other than elements are wide make an element without an area
         kept = apart(sorted(sizes, key=lambda point: sizes[point]), _MERGED * min(sizes.values()))
         for point in set(sizes).difference(kept):
@@ -381,19 +380,17 @@ class _Refinement:
         share = goals.swept_size(goal.accuracy)
         return [(low, high, (high - low) * share) for low, high in self.solution.swept]
 
-    def _at_kinks_of_friction(
-        self, goal: Goal, grading: Grading, contact: tuple[float, float], coarsest: float
-    ) -> dict[float, float]:
+    def _at_kinks_of_friction(self, goal: Goal, grading: Grading) -> dict[float, float]:
         """Element sizes at kinks of the coefficient of friction that leave an error within an element. A vertex there
         suffices, and elements are hardly larger than the distance of two kinks."""
         a, (places, jumps) = self.solution.half_width, self.problem.friction_kinks
-        inside = (places > contact[0]) & (places < contact[1])
-        size = grading.at(places) * coarsest / a
+        inside = (places > grading.contact[0]) & (places < grading.contact[1])
+        size = grading.at(places) * self.coarsest / a
         inside &= jumps * a * size**2 > goal.accuracy
         kept, sizes = places[inside], size[inside] * a
         apart = np.diff(kept, prepend=-np.inf, append=np.inf)
         sizes = np.minimum(sizes, np.minimum(apart[1:], apart[:-1]))
-        return dict(zip(kept.tolist(), (sizes / coarsest).tolist(), strict=True))
+        return dict(zip(kept.tolist(), (sizes / self.coarsest).tolist(), strict=True))
 
     def _keep_steps(self) -> None:
         """Keep the load steps of the present solution for all meshes to come, and their errors."""

@@ -15,7 +15,7 @@ from partialslip_meshes import Mesh
 
 
 @dataclass(frozen=True)
-class Inside:
+class InnerNodes:
     """Nodes inside elements, which no other element shares: eliminated from the stiffness, element by element.
 
     Parameters
@@ -57,7 +57,7 @@ class DiscreteBody:
         Kolosov's constant, which differs in plane strain and plane stress, and (kappa+1)/(2 mu).
     stiffness : (2 N, 2 N) sparse matrix
         Degrees of freedom are the displacements of all nodes along x, then those along y.
-    inside : Inside
+    inner_nodes : InnerNodes
         The nodes inside elements.
     x : (n,) array
         Nodes on the contact line, ascending; those of each cell lie as :func:`partialslip_fem.elements.nodes_of`.
@@ -82,7 +82,7 @@ class DiscreteBody:
     kappa: float
     compliance: float
     stiffness: sp.csr_matrix
-    inside: Inside
+    inner_nodes: InnerNodes
     x: Array
     mass: sp.csr_matrix
     contact: Indices
@@ -96,7 +96,7 @@ class DiscreteBody:
     @property
     def unknowns(self) -> int:
         """Number of degrees of freedom, with those inside elements."""
-        return self.stiffness.shape[0] + 2 * self.inside.count
+        return self.stiffness.shape[0] + 2 * self.inner_nodes.count
 
     def pulling(self) -> tuple[Array, Array]:
         """Displacements of all nodes (zero but for those of the plate that pulls), and nodal forces that then pull the
@@ -169,8 +169,8 @@ def body(
     """
     triangles, element = triangles_of(mesh), ELEMENTS[order]()
     basis = skfem.Basis(triangles, element, intorder=1)  # for the numbers of unknowns only
-    stiffness, inside = _stiffness(basis, kappa, compliance)
-    count = basis.N - inside.count
+    stiffness, inner_nodes = _stiffness(basis, kappa, compliance)
+    count = basis.N - inner_nodes.count
     both = np.array([[0], [count]])
 
     def on(lines: Indices) -> Indices:
@@ -189,7 +189,7 @@ def body(
         kappa=kappa,
         compliance=compliance,
         stiffness=stiffness,
-        inside=inside,
+        inner_nodes=inner_nodes,
         x=basis.doflocs[0, contact],
         mass=_mass(basis.doflocs[0, contact], order),
         contact=contact + both,
@@ -215,7 +215,7 @@ def triangles_of(mesh: Mesh) -> skfem.MeshTri:
     return skfem.MeshTri(mesh.points.T.copy(), mesh.triangles.T.copy())
 
 
-def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> tuple[sp.csr_matrix, Inside]:
+def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> tuple[sp.csr_matrix, InnerNodes]:
     """Stiffness of plane isotropic elasticity for the nodes on the sides of elements. Derivatives are constant
     multiples of those in the reference triangle, as triangles are straight: the products are integrated there, once.
 
@@ -246,7 +246,7 @@ def _stiffness(basis: skfem.Basis, kappa: float, compliance: float) -> tuple[sp.
     around = np.concatenate([sides, count + sides], axis=1)
     rows, columns = (np.broadcast_to(index, values.shape).ravel() for index in (around[:, :, None], around[:, None]))
     stiffness = sp.coo_matrix((values.ravel(), (rows, columns)), (2 * count, 2 * count)).tocsr()
-    return stiffness, Inside(around, moved)
+    return stiffness, InnerNodes(around, moved)
 
 
 def _without_inside(of_each: Array, outer: int) -> tuple[Array, Array]:

@@ -160,7 +160,7 @@ def _in_the_middle(body: DisplacedBody) -> Array:
     lam = mu * (3 - kappa) / (kappa - 1)
     result = []
     discrete = body.condensed.body
-    for u in discrete.inside.everywhere(body.u):
+    for u in discrete.inner_nodes.everywhere(body.u):
         (xx, xy), (yx, yy) = gradients(body.condensed.mesh, discrete.order, u)
         volume = lam * (xx + yy)
         result.append([volume + 2 * mu * xx, volume + 2 * mu * yy, body.way * mu * (xy + yx)])

@@ -81,7 +81,7 @@ class Remainder:
         own, known = left_over(part, mesh, order, places, backend)
         normal, shear = np.array_split(_forces(tractions), 2)
         weights = np.concatenate([-way * shear, -normal, 4 / part.compliance * strains[:, None]], axis=1)
-        fields = own.inside.everywhere(known.T.reshape(2 * _PLACES + 1, 2, -1))
+        fields = own.inner_nodes.everywhere(known.T.reshape(2 * _PLACES + 1, 2, -1))
         return cls(part, mesh, order, fields, weights, own.points[:, own.face])
 
     def stresses(self, x: Array, y: Array, states: list[int]) -> Array:

@@ -146,7 +146,7 @@ def off_the_model_with_all_nodes(order):
     mesh = block(3.0, (-1.2, 1.2), SIZES, 0.8)
     small = body(mesh, 1.8, order)
     forces = np.random.default_rng(5).normal(size=(small.contact.size, 1))
-    found = small.inside.everywhere(Condensation(small).displace(forces)[:, 0].reshape(2, -1))
+    found = small.inner_nodes.everywhere(Condensation(small).displace(forces)[:, 0].reshape(2, -1))
 
     K = with_all_nodes(mesh, order)
     count, sides = K.shape[0] // 2, small.stiffness.shape[0] // 2
