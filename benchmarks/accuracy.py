@@ -1,6 +1,7 @@
-"""Finite elements against the exact solution: orders, incompressibility, the error estimate, and error against cost.
+"""Finite elements against the exact solution: orders, jumps of the gap's curvature, incompressibility, the error
+estimate, and error against cost.
 
-python benchmarks/accuracy.py orders | incompressible | estimate | cost | floor
+python benchmarks/accuracy.py orders | bends | incompressible | estimate | cost | floor
 """
 
 import argparse
@@ -18,12 +19,15 @@ from partialslip.judge import Comparison
 from partialslip.result import Clock, Result
 from partialslip.threads import one_thread
 from partialslip_fem.bodies import Grading
+from partialslip_fem.estimate import _BENT as BENT
+from partialslip_fem.estimate import bend_errors
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.problem import scaled
 from partialslip_fem.result import to_result
 from partialslip_fem.solving import mesh_and_solve
 
 KEYS = ("a", "m", "n", "p", "q")
+BEND_SIZES = (1e-3, 3e-3, 1e-2, 3e-2)
 HERTZ = ("hertz-small-tension", "hertz-large-tension")
 
 
@@ -42,11 +46,14 @@ def on_mesh(name: str, order: int, sizes: Mapping[float, float], growth: float, 
     solution = mesh_and_solve(problem, 16 * a, graded, Clock())
     adapted = Adapted(solution, {}, 1, 1, solution.iterations, 16.0)
     result = to_result(scene, plan, problem, adapted, Clock())
-    return result.counts["dofs"], partialslip.compare(result, exact, scene, 1.0)
+    return result.counts["dofs"], partialslip.compare(result, exact, scene, 0.1)
 
 
 def ends(name: str) -> np.ndarray[Any, Any]:
-    exact = partialslip.run(partialslip.load_scene(name), ["exact"]).results["exact"]
+    return ends_of(partialslip.run(partialslip.load_scene(name), ["exact"]).results["exact"])
+
+
+def ends_of(exact: Result) -> np.ndarray[Any, Any]:
     return np.array([-exact.a, -(exact.m or 0.0), exact.n or 0.0, exact.a]) / exact.a
 
 
@@ -68,6 +75,31 @@ def orders() -> None:
                 slopes = 2 * np.log(before[1] / errors) / np.log(count / before[0]) if before else []
                 print(f"{value:15} {order:5} {count:9} {figures(found)}   " + " ".join(f"{s:5.1f}" for s in slopes))
                 before = count, errors
+
+
+def bends() -> None:
+    """Error of p due to elements at the ends of a flat, where the gap's curvature jumps, over the factor of x log|x| in
+    p times size^1.5; the error without them, with small elements there, is subtracted."""
+    print("b, mm   order  " + " ".join(f"{f'size {size:g} a':>13}" for size in BEND_SIZES))
+    for b in (1e-3, 5e-4, 2e-4):
+        for order in (1, 2, 3, 4, 6):
+            scene = partialslip.load_scene("flat-rounded", [f"fem.order={order}", f"profile.b={b}"])
+            exact = partialslip.run(scene, ["exact"]).results["exact"]
+            a, problem = exact.a / scene.length, scaled(scene, partialslip.plan(scene))
+            found = []
+            for size in (1e-6, *BEND_SIZES):
+                at = {float(end): 1e-6 * a for end in ends_of(exact) * a}
+                at |= dict.fromkeys(problem.kinks, size * a)
+                solution = mesh_and_solve(problem, 16 * a, Grading((-1.2 * a, 1.2 * a), at, 0.35), Clock())
+                result = to_result(
+                    scene, partialslip.plan(scene), problem, Adapted(solution, {}, 1, 1, 0, 16.0), Clock()
+                )
+                sizes = solution.element_sizes(np.array(problem.kinks)) / solution.half_width
+                one = bend_errors(solution, np.array(problem.bends), sizes)["p"] / BENT[order]
+                found.append((partialslip.compare(result, exact, scene, 0.1).p or 0.0, one))
+            least = found[0][0]
+            factors = [math.sqrt(max(error**2 - least**2, 0.0)) / one for error, one in found[1:]]
+            print(f"{1e3 * b:<7} P{order}     " + " ".join(f"{factor:13.1e}" for factor in factors), flush=True)
 
 
 def incompressible() -> None:
@@ -156,7 +188,14 @@ def floor() -> None:
 
 
 if __name__ == "__main__":
-    tables = {"orders": orders, "incompressible": incompressible, "estimate": estimate, "cost": cost, "floor": floor}
+    tables = {
+        "orders": orders,
+        "bends": bends,
+        "incompressible": incompressible,
+        "estimate": estimate,
+        "cost": cost,
+        "floor": floor,
+    }
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", choices=[*tables, "one"])
     parser.add_argument("of", nargs="*", help="of one: scene, order, accuracy")

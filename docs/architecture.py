@@ -16,7 +16,7 @@ ROOTS = ("partialslip", "partialslip_fem", "partialslip_meshes")
 # What nearly every package uses; its arrows would hide the others.
 EVERYWHERE = {
     "errors", "inputfile", "strictjson", "seal", "arrays", "groups", "bars", "frame", "shown", "allowance", "units",
-    "origin", "convergence", "threads", "output", "__main__",
+    "origin", "convergence", "threads", "telling", "output", "__main__",
 }  # fmt: skip
 _SIZE = (7.4, 6.2)
 

@@ -38,6 +38,10 @@ _MOST_CUTS = 16  # limit: meshes whose contact line cuts the contact; the next l
 # cost: element size where bodies of unlike materials touch first, in half-widths over the accuracy: p is off there by
 # 0.03 times the size (measured). The mesh is refined where elements are larger than this many times
 _AT_FIRST, _FIRST_SLACK = 10.0, 3.0
+# cost: elements of the contact line beyond each end of the contact, in the size of those at that end, but no more than
+# a part of its half-width
+_BEYOND, _MOST_BEYOND = 100.0, 0.1
+_AT_BENDS = 0.5  # cost: of the error at the ends: error of tractions where the gap's curvature jumps
 _OF_HALF = 0.01  # cost: element size at the corners of the second punch of pressing, in half-widths of the contact
 # cost: of the CPU seconds left: predicted seconds beyond them with which the scene's accuracy is tried nevertheless
 _OVERDRAFT = 0.3
@@ -130,6 +134,7 @@ class _Refinement:
         self.eased = False  # whether the present mesh grows faster near the ends
         self.block_width = 0.0  # width of the blocks of the present mesh
         self.errors, self.end_errors = dict[str, float](), dict[str, float]()
+        self.bend_errors: Mapping[str, float] = {}  # of tractions, due to the elements where the gap's curvature jumps
         self.error_at_ends = np.inf  # error due to the elements at the ends of zones alone, not at kinks
         self.error_at_vertices = np.inf  # the same if the ends were at vertices
         self.largest_end_element = np.inf
@@ -281,6 +286,8 @@ class _Refinement:
         if self.eased:  # beside the point that it is graded to, a mesh that grows fast is a poor one
             beside = np.abs(solution.zone_ends[:, None] - np.array([*grading.sizes])).min(axis=1)
             at_ends = at_ends * (1 + beside / (self.size * a))
+        kinks, bends = problem.bent(solution.left, solution.right)
+        self.bend_errors = estimate.bend_errors(solution, bends, solution.element_sizes(kinks) * in_coarsest)
         self.largest_end_element = grading.at(solution.zone_ends).max() * self.coarsest / a
         inside = solution.inside(solution.zone_ends)
         self.errors = self.end_errors = self._errors_of_ends(at_ends, inside, at_kinks)
@@ -332,12 +339,20 @@ class _Refinement:
         present solution, to the profile's kinks, and to kinks of q1 and q2; unless it is ``filled``, without the
         intervals that the ends of the contact sweep."""
         solution, a, coarsest = self.solution, self.solution.half_width, self.coarsest
-        margin = (0.1 + 2 * mesh.finer * mesh.size) * a  # for safety, and for the error of the present ends
+        before = mesh.finer * mesh.size  # element size at the present ends, which are known to a part of it
+        beyond = min(_BEYOND * before, _MOST_BEYOND) if solution.enclosed else _MOST_BEYOND
+        margin = (beyond + 2 * before) * a
         leftmost, rightmost = solution.reach
         contact = (max(leftmost - margin, -self.limit), min(rightmost + margin, self.limit))
-        kinks = [kink for kink in self.problem.kinks if contact[0] < kink < contact[1]]  # others are not in contact
-        points = apart([*solution.zone_ends.tolist(), *kinks], mesh.size * a)
+        kinks, bends = self.problem.bent(*contact)  # others are not in contact
+        ends = solution.zone_ends.tolist()
+        points = apart([*ends, *kinks.tolist()], mesh.size * a)
         sizes = dict.fromkeys(points, mesh.size * a / coarsest)
+        at_bends = np.maximum(estimate.bend_sizes(solution, bends, _AT_BENDS * goal.end_error), mesh.size)
+        for kink, size in zip(kinks.tolist(), at_bends.tolist(), strict=True):
+            # between unlike bodies q has a kink there that no slip makes, of unknown strength
+            if kink in sizes and kink not in ends and not solution.dissimilar:
+                sizes[kink] = size * a / coarsest
         at_kinks = np.clip(estimate.kink_sizes(solution, goal.end_error * BARS["q1"]), mesh.size, None)
         eased = goals.eased(solution, self.problem, order, mesh.growth)
         outline = self.outline
@@ -355,7 +370,7 @@ class _Refinement:
             refine(kink, needed, _KINK_SLACK)
         for kink in solution.passing:
             refine(kink, goals.PASSING * math.sqrt(goal.accuracy), _KINK_SLACK)
-        for low, high, wanted in self._swept(goal) if filled else ():
+        for low, high, wanted in goals.swept(solution, goal.accuracy) if filled else ():
             size = wanted / coarsest
             count = int(np.ceil((high - low) / (2 * size * coarsest)))
             sizes |= {
@@ -367,30 +382,13 @@ class _Refinement:
                 refine(point, _OF_HALF)
         if (first := self.problem.touches_first) is not None:
             refine(first, _AT_FIRST * goal.accuracy, _FIRST_SLACK)
-        sizes |= self._at_kinks_of_friction(goal, grading)
+        for kink, size in goals.at_kinks_of_friction(solution, self.problem, goal.accuracy, grading, coarsest):
+            sizes[kink] = size
         # two vertices far nearer to each other than elements are wide make an element without an area
         kept = apart(sorted(sizes, key=lambda point: sizes[point]), _MERGED * min(sizes.values()))
         for point in set(sizes).difference(kept):
             del sizes[point]
         return grading
-
-    def _swept(self, goal: Goal) -> list[tuple[float, float, float]]:
-        """Intervals in which surfaces that stick come into contact, and the element size there: what is locked in
-        depends on the distance of the nodes."""
-        share = goals.swept_size(goal.accuracy)
-        return [(low, high, (high - low) * share) for low, high in self.solution.swept]
-
-    def _at_kinks_of_friction(self, goal: Goal, grading: Grading) -> dict[float, float]:
-        """Element sizes at kinks of the coefficient of friction that leave an error within an element. A vertex there
-        suffices, and elements are hardly larger than the distance of two kinks."""
-        a, (places, jumps) = self.solution.half_width, self.problem.friction_kinks
-        inside = (places > grading.contact[0]) & (places < grading.contact[1])
-        size = grading.at(places) * self.coarsest / a
-        inside &= jumps * a * size**2 > goal.accuracy
-        kept, sizes = places[inside], size[inside] * a
-        apart = np.diff(kept, prepend=-np.inf, append=np.inf)
-        sizes = np.minimum(sizes, np.minimum(apart[1:], apart[:-1]))
-        return dict(zip(kept.tolist(), (sizes / self.coarsest).tolist(), strict=True))
 
     def _keep_steps(self) -> None:
         """Keep the load steps of the present solution for all meshes to come, and their errors."""
@@ -427,9 +425,11 @@ class _Refinement:
         return self.expense.allows(work * self.march_s, self._overdraft)
 
     def _errors_of_ends(self, at_ends: Array, inside: Array, at_kinks: Array) -> dict[str, float]:
-        """Errors due to elements of given sizes at ends, ``inside`` which these lie, and at kinks, to round faces and
-        to corners."""
+        """Errors due to elements of given sizes at ends, ``inside`` which these lie, and at kinks, to jumps of the
+        gap's curvature, to round faces and to corners."""
         found = estimate.end_errors(self.solution, at_ends, inside, gaps(self.solution, self.problem), at_kinks)
+        for key, error in self.bend_errors.items():
+            found[key] = math.hypot(found[key], error)
         return {key: error + self.outline.errors.get(key, 0.0) for key, error in found.items()}
 
     def _estimate_together(self) -> dict[str, float]:
@@ -487,5 +487,6 @@ class _Refinement:
         """Predicted size of a ``mesh`` on the way to ``goal``."""
         grading = self._grading(goal, problem.order, mesh, filled=False)
         least = min(grading.sizes.values())
-        swept = [(low, high, max(size, least)) for low, high, size in self._swept(goal)]
+        wanted = goals.swept(self.solution, goal.accuracy)
+        swept = [(low, high, max(size, least)) for low, high, size in wanted]
         return self.expense.size(grading, problem.order, self.width * self.solution.half_width, swept)

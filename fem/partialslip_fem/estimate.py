@@ -35,7 +35,7 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.arrays import Array, Mask
-from partialslip.bars import LEAST_SHEAR
+from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.result import Clock
 from partialslip_fem.locked import locked_in
 from partialslip_fem.mesh_solution import MeshSolution
@@ -88,6 +88,9 @@ _STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times ele
 _SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength times the shift
 # accuracy: of the change: least error where the gap's curvature jumps within elements (measured on tables)
 _OF_BROKEN = 0.4
+# accuracy: L2 error of p where the gap's curvature jumps at a vertex, in the factor of x log|x| in p times the element
+# size^1.5, by order: about twice what was measured on three flat-rounded profiles (benchmarks/accuracy.py bends)
+_BENT = {1: 1.0, 2: 0.1, 3: 0.005, 4: 0.002, 6: 0.0004}
 _ACROSS = 3.0  # accuracy: elements on either side of a kink from which its strength is found
 # accuracy: Errors of p and q, in the error of an end, for Hertz contacts; in other contacts also times the steepness.
 _TRACTIONS = {"p": 8.0, "q": 32.0}
@@ -218,6 +221,29 @@ def _of_caught(solution: MeshSolution, sizes: Array) -> Array:
     # nodes that slip a little once more under mean loads stick again as well, and tell nothing of the end
     apart = np.where(np.isnan(apart), _SIDE * sizes, np.minimum(apart, sizes))
     return np.where(solution.stick.moved, _CAUGHT_UP * sizes + apart, 0.0)
+
+
+def bend_errors(solution: MeshSolution, bends: Array, sizes: Array) -> dict[str, float]:
+    """L2 errors of p, q, q1 and q2 due to elements of ``sizes`` (k,), in contact half-widths, at points where the gap's
+    curvature jumps by ``bends`` (k,): p gains bends/pi x log|x| there, and q as much as f p does where it slips."""
+    off = _BENT[solution.lower.order] / math.pi * float(np.linalg.norm(bends * (sizes * solution.half_width) ** 1.5))
+    pressed = _norm(solution.pressure())
+    errors = {"p": off / pressed}
+    if solution.history:
+        bound = _norm(solution.shear(solution.history.bound))
+        errors |= {
+            key: off / pressed * bound / norm
+            for key, norm in zip(_SHEARS, _norms(solution).tolist(), strict=True)
+            if norm > 0
+        }
+    return errors
+
+
+def bend_sizes(solution: MeshSolution, bends: Array, error: float) -> Array:
+    """Element sizes, (k,), in contact half-widths, with which ``bends`` (k,) leave an ``error`` of tractions, relative
+    to their bars."""
+    of_one = max(off / BARS[key] for key, off in bend_errors(solution, np.ones(1), np.ones(1)).items())
+    return (error / (of_one * bends * math.sqrt(max(len(bends), 1)))) ** (2 / 3)
 
 
 def rounding_error(solution: MeshSolution) -> float:

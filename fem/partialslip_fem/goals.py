@@ -15,6 +15,7 @@ import numpy as np
 from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip_fem import estimate
+from partialslip_fem.bodies import Grading
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.problem import ScaledProblem
 from partialslip_meshes import Eased
@@ -140,6 +141,29 @@ def swept_size(accuracy: float) -> float:
     """Element size for an ``accuracy``, as a part of the width over which sticking surfaces come into contact; the
     error of q falls like size^1.5."""
     return float(min(_SWEPT[0] * (BARS["q"] * accuracy / _SWEPT[1]) ** (2 / 3), _SWEPT[2]))
+
+
+def swept(solution: MeshSolution, accuracy: float) -> list[tuple[float, float, float]]:
+    """Intervals in which surfaces that stick come into contact, and the element size there: what is locked in depends
+    on the distance of the nodes."""
+    share = swept_size(accuracy)
+    return [(low, high, (high - low) * share) for low, high in solution.swept]
+
+
+def at_kinks_of_friction(
+    solution: MeshSolution, problem: ScaledProblem, accuracy: float, grading: Grading, coarsest: float
+) -> list[tuple[float, float]]:
+    """Kinks of the coefficient of friction that leave an error within an element, and element sizes there, of the body
+    whose elements are as fine as ``coarsest``. A vertex there suffices, and elements are hardly larger than the
+    distance of two kinks."""
+    a, (places, jumps) = solution.half_width, problem.friction_kinks
+    inside = (places > grading.contact[0]) & (places < grading.contact[1])
+    size = grading.at(places) * coarsest / a
+    inside &= jumps * a * size**2 > accuracy
+    kept, sizes = places[inside], size[inside] * a
+    between = np.diff(kept, prepend=-np.inf, append=np.inf)
+    sizes = np.minimum(sizes, np.minimum(between[1:], between[:-1]))
+    return [*zip(kept.tolist(), (sizes / coarsest).tolist(), strict=True)]
 
 
 def size_reached(size: float, goal: float) -> bool:

@@ -172,6 +172,8 @@ class ScaledProblem:
         Tractions p and q at the beginning of the path.
     breaks : tuple of float
         All points x where the gap's curvature jumps; between them the gap is a parabola.
+    bends : tuple of float
+        By how much the gap's curvature jumps at each of the ``kinks``.
     coupled : bool
         Whether p moves the surfaces along x and q moves them along y.
     inside : bool
@@ -211,6 +213,7 @@ class ScaledProblem:
     backend: Backend
     start: tuple[PPoly, PPoly] | None = None
     breaks: tuple[float, ...] = ()
+    bends: tuple[float, ...] = ()
     coupled: bool = True
     inside: bool = True
     strains: tuple[tuple[float, float], ...] = ((0.0, 0.0), (0.0, 0.0))
@@ -239,6 +242,12 @@ class ScaledProblem:
     def sharp_kinks(self, length: float) -> tuple[float, ...]:
         """The sharp ones of these points, for functions that are smooth over the ``length``."""
         return tuple(kink / self.length - self.origin for kink in self.friction.sharp_kinks(length * self.length))
+
+    def bent(self, low: float, high: float) -> tuple[Array, Array]:
+        """The ``kinks`` between two points, and by how much the gap's curvature jumps there, (k,) each."""
+        kinks = np.array(self.kinks)
+        between = (kinks > low) & (kinks < high)
+        return kinks[between], np.array(self.bends)[between]
 
     def f_at(self, x: Array) -> Array:
         """Coefficient of friction at ``x`` (k,)."""
@@ -309,7 +318,8 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> ScaledProble
     """
     P, A, L, origin = scene.P, scene.material.A, scene.length, scene.origin
     parts, at_ends = parts_of(scene, L), [scene.load.tension[end] for end in scene.load.ends]
-    under = even_gap(scene, L)
+    curvature, under = scene.profile.curvature, even_gap(scene, L)
+    bends = np.abs(np.diff(curvature.values))
     parabolic = under is not None and under.parabolic
     return ScaledProblem(
         gap=lambda x: scene.gap_at(x * L + origin) / (A * P),
@@ -321,7 +331,8 @@ def scaled(scene: Scene, plan: Plan, start: State | None = None) -> ScaledProble
         far_field=scene.fem.far_field,
         backend=scene.fem.factor or default_backend(),
         start=tuple(rescaled(q, L / P, 1 / L, -origin / L) for q in (start.p, start.q)) if start else None,
-        breaks=tuple(((scene.profile.curvature.breaks - origin) / L).tolist()),
+        breaks=tuple(((curvature.breaks - origin) / L).tolist()),
+        bends=tuple((bends[np.isin(curvature.breaks, scene.profile.kinks)] * L**2 / (A * P)).tolist()),
         coupled=plan.needs("coupling"),
         inside=plan.needs("subsurface"),
         strains=tuple((lower_strain(scene, sigma), lower_strain(scene, slope * L)) for sigma, slope in at_ends),

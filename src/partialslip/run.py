@@ -28,6 +28,7 @@ from partialslip.rig import Rig, key_of, load_rig
 from partialslip.scene import Effects, Scene
 from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.shown import ByMethod, Drawn
+from partialslip.telling import told_to
 
 if TYPE_CHECKING:
     from partialslip.frame import DataFrame
@@ -267,7 +268,8 @@ def run(
         if method != "fem" and "fem" in results:
             what = _forced(what, results["fem"])
         solve = METHODS[method].solver(keep=keep, allowance=allowance, rig_of=rig_of)
-        results[name] = _slid(what, solve(what, its, _told_by(name, progress), start))
+        with told_to(_told_by(name, progress)):
+            results[name] = _slid(what, solve(what, its, _told_by(name, progress), start))
     results = {name: results[name] for name in (*chosen, *results)}
     if "fem" in results and (plates := results["fem"].plates):
         scene = plates.told(scene)

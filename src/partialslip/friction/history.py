@@ -17,6 +17,7 @@ from partialslip.friction.active_set import Solution
 from partialslip.friction.limit import cycle_change, cycles_settled, limit
 from partialslip.friction.load_path import Path
 from partialslip.friction.zone_ends import turning_points
+from partialslip.telling import tell
 
 STEADY = 1e-6  # accuracy: change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 # accuracy: changes of the last cycle that may lie between it and the limit, however few cycles went before
@@ -359,15 +360,16 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
     """
     first, *ways = path.fractions
     load = np.array(path.begin)
-    went = [_go(advance, before, load, np.array(path.cycle[-1]), first)]
+    went = [_go(advance, before, load, np.array(path.cycle[-1]), first, "first loading")]
     points, taken = [certified([step for step, _ in went[0]])], len(first)
     if path.half:
         return _reversed(path, points[0], went[0], f)
     ended, changes = [points[0].x], list[float]()  # of cycles, since some were skipped
-    for _ in range(path.cycles):
+    for cycle in range(path.cycles):
         went = []
         for start, end, fractions in zip((path.cycle[-1], *path.cycle), path.cycle, ways, strict=False):
-            went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions))
+            where = f"cycle {cycle + 1}, way {len(went) + 1} of {len(path.cycle)}"
+            went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions, where))
             points.append(certified([step for step, _ in went[-1]]))
             taken += len(fractions)
         largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
@@ -443,11 +445,12 @@ def _reversed(path: Path, first: Solution, went: "_Way", f: Array) -> History:
 _Way = list[tuple[Solution, Array]]
 
 
-def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions: tuple[float, ...]) -> _Way:
-    """Solve the steps from the loads at ``start`` to the loads at ``end``."""
+def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions: tuple[float, ...], where: str) -> _Way:
+    """Solve the steps from the loads at ``start`` to the loads at ``end``; ``where`` on the path they are."""
     before = resting(before.x)  # the loads reverse: the slip before gives no start for the active set
     load, way = start, list[tuple[Solution, Array]]()
-    for fraction in fractions:
+    for number, fraction in enumerate(fractions, 1):
+        tell(f"{where}, step {number} of {len(fractions)}" if len(fractions) > 1 else where)
         next_load = start + fraction * (end - start) if fraction < 1 else end
         before, pressure = advance(before, next_load, next_load - load)
         way.append((before, pressure))

@@ -7,7 +7,7 @@ import msgspec
 from partialslip.scene.table import Positive, Table
 
 # cost: accuracy below which elements of order 6 cost less than those of order 4 (benchmarks/accuracy.py cost)
-_FINE = 6e-8
+_FINE = 1e-7
 WIDTHS = {"half-plane": 16.0, "box": 4096.0}  # accuracy: default half-width of a block, in contact half-widths
 
 
@@ -15,7 +15,7 @@ class Fem(Table, frozen=True, kw_only=True):
     """Settings of the finite-element method.
 
     ``accuracy``: of a, m and n, as a fraction of a (marching uses it for m and n, too). ``order``: polynomial order of
-    the triangles; default 4, and 6 where meshes are refined to less than 6e-8. ``far_field``: condition on the outer
+    the triangles; default 4, and 6 where meshes are refined to less than 1e-7. ``far_field``: condition on the outer
     boundary of a block that stands for a half-plane, either the displacements of the half-plane under the contact
     tractions or a clamped ``box``. ``width``: half-width of such a block, in contact half-widths. ``lower_size``:
     element size of the lower body relative to the upper body; the nodes of the two bodies match only at 1. ``size``:
