@@ -143,7 +143,8 @@ class _Contact:
         """Follow the path."""
         before = self._path.before
         begin = resting(0 * self._bound if before is None else before)
-        history = follow(self._path, self._advance, begin, self._f, hastens=self._path.settled > 0)
+        skip = (lambda _: None) if self._path.settled > 0 else None  # nothing else is kept
+        history = follow(self._path, self._advance, begin, self._f, skip=skip)
         return self._completed(history)
 
     def _advance(self, before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:

@@ -374,7 +374,12 @@ def march(
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))
         return sheared, normal.x
 
-    history = follow(path, advance, done[0][1], f)
+    def skip(times: float) -> None:
+        (normal, sheared), (before, _) = done[-1], done[-1 - cycle]
+        forces = np.maximum(normal.x + times * (normal.x - before.x), 0.0)
+        done[-1] = replace(normal, x=forces, turn=normal.turn + times * (normal.turn - before.turn)), sheared
+
+    history = follow(path, advance, done[0][1], f, skip=skip if path.settled > 0 else None)
     last, _ = done[-cycle:][sum(len(way) for way in path.fractions[1 : path.ends[1] + 2]) - 1]
     together = replace(
         last,

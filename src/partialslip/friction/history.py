@@ -14,7 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
-from partialslip.friction.limit import cycle_change, cycles_settled, limit
+from partialslip.friction.limit import ahead, cycle_change, cycles_settled, limit
 from partialslip.friction.load_path import Path
 from partialslip.friction.zone_ends import turning_points
 from partialslip.telling import tell
@@ -349,14 +349,17 @@ def still(before: Solution) -> Solution:
     return replace(before, rest=zero, residual=zero, imbalance=0.0, iterations=0, changes=0, shift=0.0)
 
 
-def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bool = False) -> History:
+def follow(
+    path: Path, advance: Advance, before: Solution, f: Array, skip: Callable[[float], None] | None = None
+) -> History:
     """Follow the path: to the last load point, then cycle after cycle, until a cycle repeats or all cycles are done. If
     the first loading determines the cycle (``path.half``), only the first loading is solved.
 
     ``advance(before, load, change) -> (solution, pressure)`` solves one step: from the solution before the step, the
     loads after the step and their change, to the solution after the step, whose ``rest`` is minus the slip, and the
-    normal forces. The coefficient of friction is ``f`` (n,). ``hastens``: whether cycles that lead to the steady state
-    may skip those of which the limit is known (:func:`partialslip.friction.limit.limit`).
+    normal forces. The coefficient of friction is ``f`` (n,). With ``skip``, cycles that lead to the steady state skip
+    those of which the limit is known (:mod:`partialslip.friction.limit`); ``skip(times)`` lets what else the method
+    keeps of its state go on by so many times its change in the last cycle.
     """
     first, *ways = path.fractions
     load = np.array(path.begin)
@@ -379,8 +382,9 @@ def follow(path: Path, advance: Advance, before: Solution, f: Array, hastens: bo
         if cycles_settled(changes):
             break
         ended.append(points[-1].x)
-        skipped = limit(ended, bound) if hastens else None
-        if skipped is not None:
+        if skip and cycle + 1 < path.cycles and (times := ahead(ended, bound)) is not None:
+            skip(times)
+            skipped = limit(ended, bound, times)
             points[-1], ended, changes = replace(points[-1], x=skipped, shift=np.nan), [skipped], []
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]

@@ -37,19 +37,19 @@ def cycles_settled(changes: Sequence[float]) -> bool:
     return changes[-1] <= 1 or (bool(before) and max(last) <= _SMALL and min(last) >= min(before))
 
 
-def limit(states: Sequence[Array], bound: Array) -> Array | None:
-    """Limit of the tangential forces at the ends of cycles.
+def ahead(states: Sequence[Array], bound: Array) -> float | None:
+    """How many times its last change the state at the end of a cycle is away from its limit.
 
     Parameters
     ----------
     states : sequence of (n,) arrays
-        Forces at the same load point of cycles in turn, without any other step between them.
+        Tangential forces at the same load point of cycles in turn, without any other step between them.
     bound : (n,) array
         f times the normal forces, which limit them.
 
     Returns
     -------
-    (n,) array or None
+    float or None
         None if the changes from cycle to cycle are no geometric progression.
     """
     if len(states) < STATES:
@@ -62,4 +62,9 @@ def limit(states: Sequence[Array], bound: Array) -> Array | None:
     rest = np.abs(off[-1] - ratio * off[-2]).max()
     if not 0 < ratio < 1 or abs(ratio - before) > _STEADY * (1 - ratio) or rest > _CLEAN * np.abs(off[-1]).max():
         return None
-    return np.clip(states[-1] + (states[-1] - states[-2]) * ratio / (1 - ratio), -bound, bound)
+    return float(ratio / (1 - ratio))
+
+
+def limit(states: Sequence[Array], bound: Array, times: float) -> Array:
+    """Limit (n,) of the ``states``, ``times`` their last change away (:func:`ahead`), within the ``bound``."""
+    return np.clip(states[-1] + (states[-1] - states[-2]) * times, -bound, bound)
