@@ -38,9 +38,6 @@ _MOST_CUTS = 16  # limit: meshes whose contact line cuts the contact; the next l
 # cost: element size where bodies of unlike materials touch first, in half-widths over the accuracy: p is off there by
 # 0.03 times the size (measured). The mesh is refined where elements are larger than this many times
 _AT_FIRST, _FIRST_SLACK = 10.0, 3.0
-# cost: elements of the contact line beyond each end of the contact, in the size of those at that end, but no more than
-# a part of its half-width
-_BEYOND, _MOST_BEYOND = 100.0, 0.1
 _AT_BENDS = 0.5  # cost: of the error at the ends: error of tractions where the gap's curvature jumps
 _OF_HALF = 0.01  # cost: element size at the corners of the second punch of pressing, in half-widths of the contact
 # cost: of the CPU seconds left: predicted seconds beyond them with which the scene's accuracy is tried nevertheless
@@ -339,9 +336,7 @@ class _Refinement:
         present solution, to the profile's kinks, and to kinks of q1 and q2; unless it is ``filled``, without the
         intervals that the ends of the contact sweep."""
         solution, a, coarsest = self.solution, self.solution.half_width, self.coarsest
-        before = mesh.finer * mesh.size  # element size at the present ends, which are known to a part of it
-        beyond = min(_BEYOND * before, _MOST_BEYOND) if solution.enclosed else _MOST_BEYOND
-        margin = (beyond + 2 * before) * a
+        margin = (0.1 + 2 * mesh.finer * mesh.size) * a  # for safety, and for the error of the present ends
         leftmost, rightmost = solution.reach
         contact = (max(leftmost - margin, -self.limit), min(rightmost + margin, self.limit))
         kinks, bends = self.problem.bent(*contact)  # others are not in contact
