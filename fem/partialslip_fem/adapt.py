@@ -132,7 +132,7 @@ class _Refinement:
         self.block_width = 0.0  # width of the blocks of the present mesh
         self.errors, self.end_errors = dict[str, float](), dict[str, float]()
         self.bend_errors: Mapping[str, float] = {}  # of tractions, due to the elements where the gap's curvature jumps
-        self.error_at_ends = np.inf  # error due to the elements at the ends of zones alone, not at kinks
+        self.error_at_ends = np.inf  # error due to the elements at ends of zones and at bends, not at kinks of q
         self.error_at_vertices = np.inf  # the same if the ends were at vertices
         self.largest_end_element = np.inf
         self.error, self.error_before, self.calmer = np.inf, np.inf, 1.0
@@ -343,11 +343,10 @@ class _Refinement:
         ends = solution.zone_ends.tolist()
         points = apart([*ends, *kinks.tolist()], mesh.size * a)
         sizes = dict.fromkeys(points, mesh.size * a / coarsest)
-        at_bends = np.maximum(estimate.bend_sizes(solution, bends, _AT_BENDS * goal.end_error), mesh.size)
-        for kink, size in zip(kinks.tolist(), at_bends.tolist(), strict=True):
-            # between unlike bodies q has a kink there that no slip makes, of unknown strength
-            if kink in sizes and kink not in ends and not solution.dissimilar:
-                sizes[kink] = size * a / coarsest
+        if not solution.dissimilar:  # between unlike bodies q has a kink there that no slip makes, of unknown strength
+            at_bends = np.maximum(estimate.bend_sizes(solution, bends, _AT_BENDS * goal.end_error), mesh.size)
+            needed = dict(zip(kinks.tolist(), (at_bends * a / coarsest).tolist(), strict=True))
+            sizes |= {point: needed[point] for point in points if point in needed and point not in ends}
         at_kinks = np.clip(estimate.kink_sizes(solution, goal.end_error * BARS["q1"]), mesh.size, None)
         eased = goals.eased(solution, self.problem, order, mesh.growth)
         outline = self.outline
@@ -377,8 +376,7 @@ class _Refinement:
                 refine(point, _OF_HALF)
         if (first := self.problem.touches_first) is not None:
             refine(first, _AT_FIRST * goal.accuracy, _FIRST_SLACK)
-        for kink, size in goals.at_kinks_of_friction(solution, self.problem, goal.accuracy, grading, coarsest):
-            sizes[kink] = size
+        sizes |= goals.at_kinks_of_friction(solution, self.problem, goal.accuracy, grading, coarsest)
         # two vertices far nearer to each other than elements are wide make an element without an area
         kept = apart(sorted(sizes, key=lambda point: sizes[point]), _MERGED * min(sizes.values()))
         for point in set(sizes).difference(kept):

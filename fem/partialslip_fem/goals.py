@@ -152,10 +152,9 @@ def swept(solution: MeshSolution, accuracy: float) -> list[tuple[float, float, f
 
 def at_kinks_of_friction(
     solution: MeshSolution, problem: ScaledProblem, accuracy: float, grading: Grading, coarsest: float
-) -> list[tuple[float, float]]:
-    """Kinks of the coefficient of friction that leave an error within an element, and element sizes there, of the body
-    whose elements are as fine as ``coarsest``. A vertex there suffices, and elements are hardly larger than the
-    distance of two kinks."""
+) -> dict[float, float]:
+    """Element sizes at kinks of the coefficient of friction that leave an error within an element, of the ``coarsest``
+    body. A vertex there suffices, and elements are hardly larger than the distance of two kinks."""
     a, (places, jumps) = solution.half_width, problem.friction_kinks
     inside = (places > grading.contact[0]) & (places < grading.contact[1])
     size = grading.at(places) * coarsest / a
@@ -163,7 +162,7 @@ def at_kinks_of_friction(
     kept, sizes = places[inside], size[inside] * a
     between = np.diff(kept, prepend=-np.inf, append=np.inf)
     sizes = np.minimum(sizes, np.minimum(between[1:], between[:-1]))
-    return [*zip(kept.tolist(), (sizes / coarsest).tolist(), strict=True)]
+    return dict(zip(kept.tolist(), (sizes / coarsest).tolist(), strict=True))
 
 
 def size_reached(size: float, goal: float) -> bool:

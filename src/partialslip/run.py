@@ -268,8 +268,8 @@ def run(
         if method != "fem" and "fem" in results:
             what = _forced(what, results["fem"])
         solve = METHODS[method].solver(keep=keep, allowance=allowance, rig_of=rig_of)
-        with told_to(_told_by(name, progress)):
-            results[name] = _slid(what, solve(what, its, _told_by(name, progress), start))
+        with told_to(tell := _told_by(name, progress)):
+            results[name] = _slid(what, solve(what, its, tell, start))
     results = {name: results[name] for name in (*chosen, *results)}
     if "fem" in results and (plates := results["fem"].plates):
         scene = plates.told(scene)

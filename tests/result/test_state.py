@@ -56,7 +56,7 @@ def test_estimates_contain_the_error_of_the_state(method):
     found, errors = after_a_stop(method)
     for key, error in errors.items():
         assert error <= found.estimate[key] <= 15e-4
-        assert found.shares["start"][key] >= error  # what a stop changes
+        assert found.shares["start"][key] >= found.estimate[key] / 4
         assert found.estimate[key] == pytest.approx(sum(share.get(key, 0.0) for share in found.shares.values()))
 
 

@@ -371,7 +371,7 @@ def follow(
     for cycle in range(path.cycles):
         went = []
         for start, end, fractions in zip((path.cycle[-1], *path.cycle), path.cycle, ways, strict=False):
-            where = f"cycle {cycle + 1}, way {len(went) + 1} of {len(path.cycle)}"
+            tell(where := f"cycle {cycle + 1}, way {len(went) + 1} of {len(path.cycle)}")
             went.append(_go(advance, points[-1], np.array(start), np.array(end), fractions, where))
             points.append(certified([step for step, _ in went[-1]]))
             taken += len(fractions)
@@ -454,7 +454,8 @@ def _go(advance: Advance, before: Solution, start: Array, end: Array, fractions:
     before = resting(before.x)  # the loads reverse: the slip before gives no start for the active set
     load, way = start, list[tuple[Solution, Array]]()
     for number, fraction in enumerate(fractions, 1):
-        tell(f"{where}, step {number} of {len(fractions)}" if len(fractions) > 1 else where)
+        if len(fractions) > 1:
+            tell(f"{where}, step {number} of {len(fractions)}")
         next_load = start + fraction * (end - start) if fraction < 1 else end
         before, pressure = advance(before, next_load, next_load - load)
         way.append((before, pressure))
