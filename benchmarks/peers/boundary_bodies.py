@@ -122,7 +122,17 @@ def added(body: dict[str, Any], nu: float, reach: float, a: float, R: float) -> 
         middles[on_top, 0][near] / reach, moved[near].reshape(near.sum(), -1), DEGREE
     )
     found = np.polynomial.chebyshev.chebval(places / reach, fitted).T
-    return places, found.reshape(PLACES, 2, PLACES, 2)
+    return places, found.reshape(PLACES, 2, PLACES, 2) + of_arc(places, curved, nu)
+
+
+def of_arc(places: Array, curved: float, nu: float) -> Array:
+    """Flamant's displacements at ``places`` (k,) of an arc of curvature ``curved``, by forces at these places, less
+    those on a plane, of first order in the slope of the chord: (k, 2, k, 2), like those of :func:`added`. Kelvin's
+    elements have what the tractions add that Flamant's forces leave on the arc."""
+    slopes = curved * np.add.outer(places, places) / 2
+    found = np.zeros((len(places), 2, len(places), 2))
+    found[:, 0, :, 1], found[:, 1, :, 0] = slopes / np.pi, slopes * nu / (1 - nu) / np.pi
+    return found
 
 
 def flamant(r: Array, passed: Array, way: int, nu: float) -> tuple[Array, Array]:

@@ -57,12 +57,15 @@ def test_calculix_runs_it(name, ends, tmp_path):
 @pytest.mark.slow
 @needs_ccx
 def test_calculix_runs_varying_p(tmp_path):
-    """Contacts of 0.8 and 1 mm, elements of 0.04 mm, scored against the closed form at both load points."""
+    """Contacts of 0.8 and 1 mm, elements of 0.04 mm, scored against the closed form at both load points. Such elements
+    show m and n to 0.08 a only, beside the left slip zone of 0.04 a, and score does not give them."""
     scene, file = closed_form.SCENE, ran(closed_form.SCENE, tmp_path, **HOW)
     found = score(scene, file).results[file.name]
     errors = compare(found, closed_form.solved(scene), scene, None).errors
-    assert max(errors[key] for key in ("a", "left_1", "right_1", "left_2", "right_2", "m", "n", "p", "p_1")) < 0.02
+    assert max(errors[key] for key in ("a", "left_1", "right_1", "left_2", "right_2", "p", "p_1")) < 0.02
     assert errors["q"] < 0.05
+    assert max(found.estimate[key] for key in "mn") > 0.05
+    assert "m and n are not given" in found.notes[-1]
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from partialslip.units import Dimension
 
 _PACKAGE = "partialslip.benchmark"
 _TARGETS = "targets.json"
-EDITION = "1.0rc6"
+EDITION = "1.0"
 SETTINGS = ("fem", "effects")  # tables of a scene that are settings of partialslip, no part of a problem
 
 
