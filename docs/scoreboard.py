@@ -69,14 +69,14 @@ targets, or there was no time to run it. *none*: the code did not converge; the 
 best* is the highest grade that the uncertainty of the targets allows: no code can have a better one. This project ran
 all codes, with adapters of its own; their authors did not tune them.
 
-**Seconds.** All codes ran in one go, one process with one thread at a time, on one machine of two cores ({machine}).
-CPU seconds of CalculiX, GetFEM, Kratos and OpenSees are of their whole process, without the meshes, which partialslip
-makes; those of `getfem-graded` count the first run, which finds the ends. Methods of partialslip answered in a process
-that was warm. The first number is the solution, meshes included (P1 and P2: of the finest mesh). The second number adds
-the start, Python and libraries, measured first (`benchmarks/start.py`): {starts} CPU s. Only it should be compared with
-other codes. Repeated runs differ by a tenth and more. CalculiX solves slices of three dimensions, two layers of nodes
-held in plane strain: twice the unknowns that a plane code has on the same mesh. The answers are in
-`benchmarks/submissions`.
+**Seconds.** All codes ran on one afternoon, on one machine of two cores ({machine}): partialslip first, one process of
+one thread at a time; then the others, at most two such processes at a time, beside tests of partialslip. CPU seconds of
+CalculiX, GetFEM, Kratos and OpenSees are of their whole process, without the meshes, which partialslip makes; those of
+`getfem-graded` count the first run, which finds the ends. Methods of partialslip answered in a process that was warm.
+The first number is the solution, meshes included (P1 and P2: of the finest mesh). The second number adds the start,
+Python and libraries, measured first (`benchmarks/start.py`): {starts} CPU s. Only it should be compared with other
+codes. Repeated runs differ by a tenth and more. CalculiX solves slices of three dimensions, two layers of nodes held in
+plane strain: twice the unknowns that a plane code has on the same mesh. The answers are in `benchmarks/submissions`.
 
 The table below them has, for each code, the number of problems that count (every target of contact, stick and tractions
 has a value), and the worst grade of each group of targets. "1 not offered": one problem with other values lacks values

@@ -107,6 +107,21 @@ def test_tractions_that_a_code_writes_become_its_answer(name, tmp_path, monkeypa
     assert {"stick", "tractions", "levels"} & found.groups.keys()
 
 
+@pytest.mark.parametrize("name", ["kratos", "opensees"])
+def test_a_code_that_does_not_converge_has_a_second_try(name, tmp_path, monkeypatch):
+    """With twice as many increments a step, once; a number that is asked for is kept."""
+    tries = tmp_path / "tries"
+    count = f"open({str(tries)!r}, 'a').write(str(told['steps'][0]['increments']) + ' ')"
+    stand_in(tmp_path, monkeypatch, name, f"{count}\nprint(json.dumps({{'unknowns': 7, 'gave_up': 'press'}}))")
+    once = code_answers(name, {"PS-02": PROBLEMS["PS-02"]}).answers["PS-02"]
+    assert tries.read_text("utf-8") == "1 2 "
+    assert once.note == "did not converge in step 'press'"
+    tries.unlink()
+    assert "2 where it does not converge" in CODES[name].settings
+    CODES[name].__class__(0.3, 1, just=1).solve(PROBLEMS["PS-02"].scene)
+    assert tries.read_text("utf-8") == "1 "
+
+
 @pytest.mark.parametrize("name", COARSE)
 def test_scripts_are_told_the_problem(name, tmp_path, monkeypatch):
     """P, Q and sigma of the last cycle, friction, supports and materials, for the pad on the pulled specimen."""

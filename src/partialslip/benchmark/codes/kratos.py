@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from partialslip.benchmark.codes.process import CodeOutcome
-from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, solved
+from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, or_twice, patient, solved
 from partialslip.benchmark.increments import gradual, refined
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
@@ -38,7 +38,7 @@ class Kratos:
     def settings(self) -> str:
         """Settings in words."""
         kind = f"linear quadrilaterals of {self.size:g} a along the contact, mortar contact, augmented Lagrangian"
-        increments = f"{self.just or self.increments} increments a step"
+        increments = f"{self.just} increments a step" if self.just else or_twice(self.increments)
         return f"{kind}, tangent_factor 1, {increments}, bodies {STIFFER:g} times stiffer"
 
     def solve(self, scene: Scene) -> CodeOutcome | None:
@@ -50,6 +50,10 @@ class Kratos:
             made = modelled(scene, self.size, growth=GROWTH, stiffer=STIFFER)
         except InputError:
             return None
-        steps = refined(made.steps, self.increments, self.just)
-        with tempfile.TemporaryDirectory() as folder:
-            return solved(HOST, scene, of_scene(scene, steps) | of_model(made), Path(folder))
+
+        def solve(increments: int) -> CodeOutcome:
+            steps = refined(made.steps, increments, self.just)
+            with tempfile.TemporaryDirectory() as folder:
+                return solved(HOST, scene, of_scene(scene, steps) | of_model(made), Path(folder))
+
+        return patient(solve, self.increments, self.just)

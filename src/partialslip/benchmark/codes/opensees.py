@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from partialslip.benchmark.codes.process import CodeOutcome
-from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, solved
+from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, or_twice, patient, solved
 from partialslip.benchmark.increments import gradual, refined
 from partialslip.benchmark.neutral import GROWTH
 from partialslip.errors import InputError
@@ -39,8 +39,8 @@ class OpenSees:
     def settings(self) -> str:
         """Settings in words."""
         kind = f"linear quadrilaterals of {self.size:g} a along the contact, SimpleContact2D with multipliers"
-        increments = f"{self.just}" if self.just else f"at least {self.increments}"
-        return f"{kind}, {self.sticking:g} E/a on stick, {increments} increments a step"
+        increments = f"{self.just} increments a step" if self.just else f"at least {or_twice(self.increments)}"
+        return f"{kind}, {self.sticking:g} E/a on stick, {increments}"
 
     def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if there is no model, the upper body would have to turn, or the meshes do not match."""
@@ -54,7 +54,10 @@ class OpenSees:
         lines = [sorted(part.mesh.points[part.contact, 0] / made.a) for part in made.parts]
         if len(lines[0]) != len(lines[1]) or max(abs(x - y) for x, y in zip(*lines, strict=True)) > _MATCH:
             return None
-        steps = refined(made.steps, self.increments, self.just)
-        with tempfile.TemporaryDirectory() as folder:
-            told = of_scene(scene, steps) | of_model(made) | {"sticking": self.sticking}
-            return solved(HOST, scene, told, Path(folder))
+
+        def solve(increments: int) -> CodeOutcome:
+            told = of_scene(scene, refined(made.steps, increments, self.just)) | of_model(made)
+            with tempfile.TemporaryDirectory() as folder:
+                return solved(HOST, scene, told | {"sticking": self.sticking}, Path(folder))
+
+        return patient(solve, self.increments, self.just)

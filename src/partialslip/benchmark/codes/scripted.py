@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,6 +19,7 @@ from partialslip.score.read import read_tractions
 from partialslip.strictjson import decoded
 
 TABLE = "table.csv"
+_GAVE_UP = "did not converge"
 
 
 class _Told(msgspec.Struct):
@@ -95,8 +96,23 @@ def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path
         told = decoded(last, _Told, "last line")
         unknowns = told.unknowns
         if told.gave_up:
-            return failed(f"did not converge in step {told.gave_up!r}", unknowns)
+            return failed(f"{_GAVE_UP} in step {told.gave_up!r}", unknowns)
         result = scored(scene, read_tractions(folder / TABLE, scene), "", TABLE)
     except InputError as error:
         return failed(f"no results: {error}", unknowns)
     return CodeOutcome(result, "", unknowns, done.cpu_s, done.memory_mb)
+
+
+def patient(solve: Callable[[int], CodeOutcome], increments: int, just: int | None) -> CodeOutcome:
+    """Outcome of ``solve(increments)`` or, if the code does not converge, with twice as many increments: convergence
+    may hang on details of the mesh. The cost is that of both. Not if ``just`` so many increments are asked for."""
+    first = solve(increments)
+    if just or not first.why.startswith(_GAVE_UP):
+        return first
+    second = solve(2 * increments)
+    return second._replace(cpu_s=(first.cpu_s or 0.0) + (second.cpu_s or 0.0))
+
+
+def or_twice(increments: int) -> str:
+    """Words for ``increments`` of :func:`patient`, to end settings with."""
+    return f"{increments} increments a step, {2 * increments} where it does not converge"
