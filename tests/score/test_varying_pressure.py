@@ -69,8 +69,8 @@ def test_point_data(tmp_path):
 
 
 def test_calculix_at_both_load_points():
-    found = calculix.read_frd(FRD.read_text(), "a.frd", None, (0, 1, 2))
-    turned = calculix.read_frd(FRD.read_text(), "a.frd", None, (1, 0, 2))
+    found = calculix.read_frd(FRD.read_text(), "a.frd", None, calculix.LoadPoints(0, 1, 2))
+    turned = calculix.read_frd(FRD.read_text(), "a.frd", None, calculix.LoadPoints(1, 0, 2))
     assert np.array_equal(found["p1"], turned["p"])
     assert read_tractions(FRD, SCENE).p1 is not None
     assert read_tractions(FRD, SCENE.replace(load={"P": SCENE.P})).p1 is None

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -53,10 +54,18 @@ class ContactStress:
     stress: Array
 
 
-def read_frd(
-    text: str, origin: str, chosen: tuple[int, int] | None, load_points: tuple[int, int, int]
-) -> dict[str, Array]:
-    """Columns x, p, p1, q1 and q2 of an ASCII .frd file, at the nodes in contact at load point 1 or 2.
+class LoadPoints(NamedTuple):
+    """Indices of load points 1 and 2, ``first`` and ``second``, in the cycle, from 0, which has ``number`` load points.
+    With ``every`` one, q1 and q2 are the least and the largest shear at any of them, as out of phase."""
+
+    first: int
+    second: int
+    number: int
+    every: bool = False
+
+
+def read_frd(text: str, origin: str, chosen: tuple[int, int] | None, load_points: LoadPoints) -> dict[str, Array]:
+    """Columns x, p, p1, q1 and q2 of an ASCII .frd file, at the nodes in contact at one of the load points.
 
     Parameters
     ----------
@@ -65,8 +74,7 @@ def read_frd(
     chosen : (int, int), optional
         Numbers of the contact results of load points 1 and 2, from 1. By default the last result of each of the last
         steps.
-    load_points : (int, int, int)
-        Indices of load points 1 and 2 in the cycle, from 0, and the number of load points in a cycle.
+    load_points : LoadPoints
 
     Raises
     ------
@@ -75,36 +83,40 @@ def read_frd(
     """
     lines = text.splitlines()
     numbers, points = _nodes(lines, origin)
-    first, second = _pair(_contacts(lines, origin), origin, chosen, load_points, "*CONTACT FILE with CSTR")
-    if not np.array_equal(first.keys, second.keys):
-        raise InputError(f"{origin}: contact results at load points 1 and 2: must be at the same nodes")
-    touched = (first.stress != 0).any(axis=1) | (second.stress != 0).any(axis=1)
-    x = _x_of_nodes(numbers, points[:, 0], second.keys[touched, 0], origin)
-    return _columns(x, first.stress[touched], second.stress[touched])
+    found = _at_load_points(_contacts(lines, origin), origin, chosen, load_points, "*CONTACT FILE with CSTR")
+    if not all(np.array_equal(each.keys, found[0].keys) for each in found):
+        raise InputError(f"{origin}: contact results at the load points: must be at the same nodes")
+    stresses = np.array([each.stress for each in found])
+    touched = (stresses != 0).any(axis=(0, 2))
+    x = _x_of_nodes(numbers, points[:, 0], found[0].keys[touched, 0], origin)
+    return _columns(x, stresses[:, touched])
 
 
 def read_dat(
-    text: str, mesh: str, origin: str, chosen: tuple[int, int] | None, load_points: tuple[int, int, int]
+    text: str, mesh: str, origin: str, chosen: tuple[int, int] | None, load_points: LoadPoints
 ) -> dict[str, Array]:
     """Columns x, p, p1, q1 and q2 of a .dat file, at slave nodes, or as means over slave faces.
 
     ``mesh`` is the content of the .frd file, which has the coordinates. The rest as for :func:`read_frd`.
     """
-    first, second = _pair(_printed(text.splitlines(), origin), origin, chosen, load_points, "*CONTACT PRINT with CSTR")
-    keys = np.unique(np.concatenate([first.keys, second.keys]), axis=0)
-    one, two = (_means(keys, block) for block in (first, second))
+    blocks = _printed(text.splitlines(), origin)
+    found = _at_load_points(blocks, origin, chosen, load_points, "*CONTACT PRINT with CSTR")
+    keys = np.unique(np.concatenate([each.keys for each in found]), axis=0)
     lines = mesh.splitlines()
     numbers, points = _nodes(lines, origin)
     if keys.shape[1] == 2:
         x = _middles(lines, keys, numbers, points[:, 0], origin)
     else:
         x = _x_of_nodes(numbers, points[:, 0], keys[:, 0], origin)
-    return _columns(x, one, two)
+    return _columns(x, np.array([_means(keys, each) for each in found]))
 
 
-def _columns(x: Array, first: Array, second: Array) -> dict[str, Array]:
-    """Columns by name, from stresses (n, 2) at load points 1 and 2; p is the pressure at load point 2."""
-    return {"x": x, "p": second[:, 0], "p1": first[:, 0], "q1": first[:, 1], "q2": second[:, 1]}
+def _columns(x: Array, stresses: Array) -> dict[str, Array]:
+    """Columns by name, from ``stresses`` (k, n, 2) at load points 1 and 2 and, if q1 and q2 are to be the least and the
+    largest shear of the cycle, at the other ones; p is the pressure at load point 2."""
+    (p1, p, *_), shear = stresses[..., 0], stresses[..., 1]
+    q1, q2 = shear if len(shear) == 2 else (shear.min(axis=0), shear.max(axis=0))
+    return {"x": x, "p": p, "p1": p1, "q1": q1, "q2": q2}
 
 
 def stated_units(mesh: str) -> Units | None:
@@ -117,14 +129,10 @@ def stated_units(mesh: str) -> Units | None:
     return next((units for units in SYSTEMS if any(name.endswith(f"_{units.identifier}") for name in names)), None)
 
 
-def _pair(
-    blocks: Sequence[ContactStress],
-    origin: str,
-    chosen: tuple[int, int] | None,
-    load_points: tuple[int, int, int],
-    wanted: str,
-) -> tuple[ContactStress, ContactStress]:
-    """Contact stresses at load points 1 and 2."""
+def _at_load_points(
+    blocks: Sequence[ContactStress], origin: str, chosen: tuple[int, int] | None, load_points: LoadPoints, wanted: str
+) -> list[ContactStress]:
+    """Contact stresses at load points 1 and 2 and, if ``load_points`` ask for it, at the others of the last cycle."""
     if not blocks:
         raise InputError(f"{origin}: no contact stresses; add {wanted} to the CalculiX deck")
     if chosen is not None:
@@ -132,15 +140,16 @@ def _pair(
             raise InputError(
                 f"--at {chosen[0]},{chosen[1]}: must be from 1 to {len(blocks)}, contact results of {origin}"
             )
-        return blocks[chosen[0] - 1], blocks[chosen[1] - 1]
+        return [blocks[chosen[0] - 1], blocks[chosen[1] - 1]]
     last = [block for block, after in zip(blocks, [*blocks[1:], None], strict=True)
             if after is None or not block.step or block.step != after.step]  # fmt: skip
-    first, second, count = load_points
+    first, second, count, every = load_points
     if len(last) < count:
         raise InputError(
             f"{origin}: contact results of {len(last)} steps: must be {count} or more, one per load point of a cycle"
         )
-    return last[first - count], last[second - count]
+    others = [end for end in range(count) if every and end not in (first, second)]
+    return [last[end - count] for end in (first, second, *others)]
 
 
 def _nodes(lines: Sequence[str], origin: str) -> tuple[Indices, Array]:

@@ -11,7 +11,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.inputfile import check_regular, read_bytes
 from partialslip.scene import Scene
-from partialslip.score.calculix import read_dat, read_frd, stated_units
+from partialslip.score.calculix import LoadPoints, read_dat, read_frd, stated_units
 from partialslip.score.csvfile import Columns, read_csv
 from partialslip.score.headers import COLUMN_DIMENSIONS, SHEAR_COLUMNS
 from partialslip.score.samples import Samples, samples
@@ -53,7 +53,9 @@ def read_tractions(
     """
     origin, suffix = str(file), file.suffix.lower()
     load, anew = scene.load, scene.presses_anew
-    load_points = (0, 0, 1) if scene.only_pressed else (*load.ends, len(load.points))
+    load_points = LoadPoints(*load.ends, len(load.points), every=not load.in_phase)
+    if scene.only_pressed:
+        load_points = LoadPoints(0, 0, 1)
     if at is not None and suffix not in (".frd", ".dat"):
         raise InputError(f"--at {at[0]},{at[1]}: must be left out except for .frd and .dat files")
     if chosen and suffix not in TABLES:

@@ -45,12 +45,14 @@ class Host(NamedTuple):
 
 
 def of_scene(scene: Scene, steps: Sequence[Step]) -> dict[str, Any]:
-    """Parameters of all scripts: friction, steps, numbers of the steps of load points 1 and 2, and the table's name."""
+    """Parameters of all scripts: friction, steps, numbers of the steps of load points 1 and 2 and, out of phase, of all
+    load points of the last cycle, of whose shear q1 is the least and q2 the largest; and the table's name."""
     first = len(steps) - len(scene.load.points)
     return {
         "f": scene.friction.f,
         "steps": [step._asdict() for step in steps],
         "points": [-1, -1] if scene.only_pressed else [first + end for end in scene.load.ends],
+        "cycle": [] if scene.load.in_phase else [*range(first, len(steps))],
         "table": TABLE,
     }
 

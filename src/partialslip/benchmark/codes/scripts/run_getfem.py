@@ -9,7 +9,8 @@ in p0 a/E, so that Newton's residual means the same for p and q.
 PARAMETERS, in SI units: a; p0; f; order of the elements; augmentation, the constant of the augmented conditions in E/a;
 gap (x, values); start, an approach that makes the bodies touch; bodies lower and upper: mesh, E, nu, lines (numbers of
 the physical groups by name), held (names of lines along x and along y), pulled; strain of a unit tension; steps (name,
-P, Q, sigma, M, increments); turns; points, numbers of the steps of load points 1 and 2; table, the file to write.
+P, Q, sigma, M, increments); turns; points, numbers of the steps of load points 1 and 2; cycle, of those whose least and
+largest shear q1 and q2 are; table, the file to write.
 """
 
 import json
@@ -40,6 +41,9 @@ def main(told):
         tractions.append([contact.traction(name) for name in ("p", "q")])
     if not gave_up:
         (p1, q1), (p, q2) = (tractions[number] for number in told["points"])
+        if told["cycle"]:
+            shear = np.array([tractions[number][1] for number in told["cycle"]])
+            q1, q2 = shear.min(axis=0), shear.max(axis=0)
         columns = np.column_stack([contact.x, p, p1, q1, q2])
         np.savetxt(told["table"], columns, "%.12e", ",", header="x,p,p1,q1,q2", comments="")
     print(json.dumps({"unknowns": contact.model.nbdof(), "cpu_s": time.process_time(), "gave_up": gave_up}))

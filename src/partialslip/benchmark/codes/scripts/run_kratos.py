@@ -8,7 +8,8 @@ it is not.
 
 PARAMETERS, in SI units: a; f; bodies lower and upper: points, quads, contact (edges), E, nu; held (nodes along x, and
 along y) of both; pull (forces on the lower body's nodes of a unit tension); strained (strains of a unit tension); steps
-(name, P, Q, sigma, increments, guided); points, numbers of the steps of load points 1 and 2; table, the file to write.
+(name, P, Q, sigma, increments, guided); points, numbers of the steps of load points 1 and 2; cycle, of those whose
+least and largest shear q1 and q2 are; table, the file to write.
 """
 
 import json
@@ -181,6 +182,9 @@ def main(told):
     if not gave_up:
         x = np.array([node.X0 for node in analysis.slaves]) * told["a"]
         (p1, q1), (p, q2) = (analysis.tractions[number] for number in told["points"])
+        if told["cycle"]:
+            shear = np.array([analysis.tractions[number][1] for number in told["cycle"]])
+            q1, q2 = shear.min(axis=0), shear.max(axis=0)
         columns = np.column_stack([x, p, p1, q1, q2])[np.argsort(x)]
         np.savetxt(told["table"], columns, "%.12e", ",", header="x,p,p1,q1,q2", comments="")
     unknowns = 2 * analysis.part.NumberOfNodes()

@@ -9,8 +9,8 @@ is no longer guided. Lengths are in a, and stresses in E of the lower body.
 
 PARAMETERS, in SI units: a; f; bodies lower and upper: points, quads, contact (edges), E, nu; held (nodes along x, and
 along y) of both; pull (forces on the lower body's nodes of a unit tension); strained (strains of a unit tension); steps
-(name, P, Q, sigma, increments, guided); points, numbers of the steps of load points 1 and 2; sticking, the stiffness of
-sticking, E/a; table, the file to write.
+(name, P, Q, sigma, increments, guided); points, numbers of the steps of load points 1 and 2; cycle, of those whose
+least and largest shear q1 and q2 are; sticking, the stiffness of sticking, E/a; table, the file to write.
 """
 
 import json
@@ -200,6 +200,9 @@ def main(told):
     gave_up, tractions = bodies.solve()
     if not gave_up:
         (p1, q1), (p, q2) = (tractions[number] for number in told["points"])
+        if told["cycle"]:
+            shear = np.array([tractions[number][1] for number in told["cycle"]])
+            q1, q2 = shear.min(axis=0), shear.max(axis=0)
         columns = np.column_stack([bodies.x * told["a"], p, p1, q1, q2])
         np.savetxt(told["table"], columns, "%.12e", ",", header="x,p,p1,q1,q2", comments="")
     print(json.dumps({"unknowns": ops.systemSize(), "gave_up": gave_up}), flush=True)
