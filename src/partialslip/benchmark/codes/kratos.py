@@ -1,12 +1,10 @@
 """Kratos and its contact application: models by :mod:`partialslip.export`, run by a Python that has them."""
 
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
 from partialslip.benchmark.codes.process import CodeOutcome
-from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, or_twice, patient, solved
-from partialslip.benchmark.increments import gradual, refined
+from partialslip.benchmark.codes.scripted import Host, or_twice, patient
+from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.neutral import GROWTH, STIFFER
 from partialslip.errors import InputError
 from partialslip.export.model import modelled
@@ -50,10 +48,4 @@ class Kratos:
             made = modelled(scene, self.size, growth=GROWTH, stiffer=STIFFER)
         except InputError:
             return None
-
-        def solve(increments: int) -> CodeOutcome:
-            steps = refined(made.steps, increments, self.just)
-            with tempfile.TemporaryDirectory() as folder:
-                return solved(HOST, scene, of_scene(scene, steps) | of_model(made), Path(folder))
-
-        return patient(solve, self.increments, self.just)
+        return patient(HOST, scene, made, self.increments, self.just)

@@ -1,12 +1,10 @@
 """OpenSees: models by :mod:`partialslip.export`, run by a Python that has OpenSeesPy."""
 
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
 from partialslip.benchmark.codes.process import CodeOutcome
-from partialslip.benchmark.codes.scripted import Host, of_model, of_scene, or_twice, patient, solved
-from partialslip.benchmark.increments import gradual, refined
+from partialslip.benchmark.codes.scripted import Host, or_twice, patient
+from partialslip.benchmark.increments import gradual
 from partialslip.benchmark.neutral import GROWTH
 from partialslip.errors import InputError
 from partialslip.export.model import modelled
@@ -54,10 +52,4 @@ class OpenSees:
         lines = [sorted(part.mesh.points[part.contact, 0] / made.a) for part in made.parts]
         if len(lines[0]) != len(lines[1]) or max(abs(x - y) for x, y in zip(*lines, strict=True)) > _MATCH:
             return None
-
-        def solve(increments: int) -> CodeOutcome:
-            told = of_scene(scene, refined(made.steps, increments, self.just)) | of_model(made)
-            with tempfile.TemporaryDirectory() as folder:
-                return solved(HOST, scene, told | {"sticking": self.sticking}, Path(folder))
-
-        return patient(solve, self.increments, self.just)
+        return patient(HOST, scene, made, self.increments, self.just, {"sticking": self.sticking})

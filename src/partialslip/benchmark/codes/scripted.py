@@ -2,7 +2,8 @@
 
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+import tempfile
+from collections.abc import Mapping, Sequence
 from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,6 +11,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from partialslip.benchmark.codes.process import LONGEST, CodeOutcome, python_with, ran
+from partialslip.benchmark.increments import refined
 from partialslip.errors import InputError
 from partialslip.export.load_steps import Step
 from partialslip.export.model import Model
@@ -105,13 +107,22 @@ def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path
     return CodeOutcome(result, "", unknowns, done.cpu_s, done.memory_mb)
 
 
-def patient(solve: Callable[[int], CodeOutcome], increments: int, just: int | None) -> CodeOutcome:
-    """Outcome of ``solve(increments)`` or, if the code does not converge, with twice as many increments: convergence
-    may hang on details of the mesh. The cost is that of both. Not if ``just`` so many increments are asked for."""
-    first = solve(increments)
+def patient(
+    host: Host, scene: Scene, model: Model, increments: int, just: int | None, more: Mapping[str, Any] | None = None
+) -> CodeOutcome:
+    """Outcome of a ``model`` of ``scene`` with at least so many ``increments`` a step or, if the code does not
+    converge, with twice as many: convergence may hang on details of the mesh. The cost is that of both. There is no
+    second try if ``just`` so many increments are asked for. ``more`` are parameters of the script."""
+
+    def outcome(least: int) -> CodeOutcome:
+        told = of_scene(scene, refined(model.steps, least, just)) | of_model(model) | dict(more or {})
+        with tempfile.TemporaryDirectory() as folder:
+            return solved(host, scene, told, Path(folder))
+
+    first = outcome(increments)
     if just or not first.why.startswith(_GAVE_UP):
         return first
-    second = solve(2 * increments)
+    second = outcome(2 * increments)
     return second._replace(cpu_s=(first.cpu_s or 0.0) + (second.cpu_s or 0.0))
 
 
