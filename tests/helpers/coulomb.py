@@ -182,9 +182,9 @@ def recorded():
         marches[-1].history = found  # with what is known of its legs
         return found
 
-    def anew(true, x, C, stretch, *others):
+    def anew(true, x, C, stretch, *others, **more):
         making.append((C, stretch, None, None))
-        return true(x, C, stretch, *others)
+        return true(x, C, stretch, *others, **more)
 
     def unlike(true, C, gap, stretch, bent, f, *others, **more):
         making.append((C.xx, np.array([stretch[0], bent]), None if C.xy is None else C.xy / f, None))

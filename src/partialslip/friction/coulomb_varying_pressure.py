@@ -24,6 +24,7 @@ from partialslip.friction.history import History, follow, resting
 from partialslip.friction.load_path import Path
 from partialslip.friction.normal import Presses
 from partialslip.friction.path_following import NothingSticksError
+from partialslip.friction.warm_start import Trail
 from partialslip.scene.model import require_carried
 
 _INSIDE = 0.4  # accuracy: of the distance from the end at the beginning of a step: where the ratio L is taken
@@ -39,6 +40,7 @@ def march(
     press: Presses,
     path: Path,
     few: int = 0,
+    trail: Trail | None = None,
 ) -> History:
     """Follow the path with a new pressure at each step, or event by event (:attr:`Path.followed`); every step, and
     every leg, has a certificate.
@@ -58,6 +60,8 @@ def march(
     path : Path
     few : int
         As for :func:`partialslip.friction.coulomb_varying_events.march`.
+    trail : Trail, optional
+        Where steps begin that no cycle before has taken; theirs are kept in it.
     """
     if path.followed:
         with suppress(
@@ -75,7 +79,11 @@ def march(
         nonlocal attached, drift
         Q, P, M = (float(load[i]) for i in (0, 3, 4))
         normal = press(P, M)
-        near = sides[-cycle] if len(sides) >= first + cycle else before.sides
+        if len(sides) >= first + cycle:
+            near = sides[-cycle]
+        else:
+            starts = trail.starts(len(sides)) if trail else []
+            near = starts[0][1].sides if starts else before.sides
         free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1] - drift
         bound = f * normal.x
         require_carried([Q], float(bound.sum()))
@@ -85,6 +93,8 @@ def march(
         sticks = (normal.x > 0) & (found.sides == 0)
         attached = _spanned(normal.x)
         drift = np.where(attached & (normal.x <= 0), moved - moved[sticks].mean(), 0.0) if sticks.any() else 0 * x
+        if trail and len(sides) < first + cycle:
+            trail.keep(len(sides), (normal, found))
         pressed.append(normal)
         sides.append(found.sides)
         return found, normal.x

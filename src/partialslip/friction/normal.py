@@ -1,5 +1,6 @@
 """Bodies pressed together without friction, on a line of contact nodes."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 
@@ -19,6 +20,8 @@ _CHECKED = 64  # cost: changes after which rates are found anew, free of the rou
 _APART = 1e-12  # accuracy: share of a way between two instants at which nodes touch, below which they are one
 _MOST = 8  # limit: changes per node on a way: under a moment the contact may move over a node and back
 
+Near = tuple[Sides, float]
+
 
 def press(
     normal: Array,
@@ -26,7 +29,7 @@ def press(
     P: float,
     arms: Array | None = None,
     moment: float = 0.0,
-    near: tuple[Sides, float] | None = None,
+    near: Near | None = None,
 ) -> Solution:
     """Nodal normal forces (n,), none tensile, that close ``gap`` (n,) and sum to ``P``.
 
@@ -61,18 +64,22 @@ def press(
 
 
 class Presses:
-    """Forces under any P and M, in any order: each from the solution of the loads before; those known are kept.
+    """Forces under any P and M, in any order; those known are kept.
 
     Parameters
     ----------
     normal, gap, arms
         As for :func:`press`.
+    start : callable, optional
+        ``start(P, M)``: sides and angle to begin with; default: those of the loads before.
     """
 
-    def __init__(self, normal: Array, gap: Array, arms: Array | None) -> None:
+    def __init__(
+        self, normal: Array, gap: Array, arms: Array | None, start: Callable[[float, float], Near] | None = None
+    ) -> None:
         self._problem = normal, gap
-        self._arms = arms
-        self._near: tuple[Sides, float] | None = None
+        self._arms, self._start = arms, start
+        self._near: Near | None = None
         self._known: dict[tuple[float, float], Solution] = {}
         self._ways: dict[tuple[tuple[float, float], tuple[float, float]], Bounds] = {}
         self._tableau: Tableau | None = None
@@ -80,7 +87,8 @@ class Presses:
     def __call__(self, P: float, M: float) -> Solution:
         """Solution under ``P`` and ``M``, about the origin of the arms."""
         if (P, M) not in self._known:
-            found = press(*self._problem, P, self._arms, M, self._near)
+            near = self._start(P, M) if self._start else self._near
+            found = press(*self._problem, P, self._arms, M, near)
             self._near = found.sides, found.turn
             self._known[P, M] = found
         return self._known[P, M]

@@ -14,7 +14,7 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.bars import BARS
-from partialslip.friction.history import History
+from partialslip.friction.history import SHEARS, History
 from partialslip.friction.load_path import Path
 from partialslip.friction.regime import doubts
 from partialslip.friction.restart import begun, end_state
@@ -91,11 +91,13 @@ class CellProblem(ABC, Generic[L]):
     ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``meshes`` are the
     sizes of the cells at the ends of zones, in a, and their growth; on the first ``coarse`` ones ends are only found.
     ``telling`` are the keys of the errors that the line on a mesh tells. ``steps_count``: whether the errors of load
-    steps leave less to those of the cells.
+    steps leave less to those of the cells. ``nearly``: excess of errors up to which the following mesh is halfway to
+    the next one of ``meshes``; the second number is for errors of q, q1 and q2 on later meshes.
     """
 
     coarse = 1
     steps_count = True
+    nearly = 0.0, 0.0
     telling: tuple[str, ...]
 
     def __init__(
@@ -136,11 +138,18 @@ class CellProblem(ABC, Generic[L]):
         ``spent`` ones; infinite: there is to be none."""
         return float(spent * (count / len(level.vertices)) ** 3)
 
-    def enough(self, meshed: Errors, stepped: Errors) -> bool:
-        """Whether finer cells are not needed, or of no use: they do not reduce the error of load steps."""
+    def excess(self, meshed: Errors, stepped: Errors) -> Errors:
+        """Errors ``meshed`` over what is allowed: at most 1 if finer cells are not needed, or of no use: they do not
+        reduce the error of load steps."""
         allowed = {key: BARS[key] * self.scene.fem.accuracy for key in meshed}
         lost = stepped if self.steps_count else {}
-        return all(meshed[key] <= max(most - lost.get(key, 0.0), most / 2) for key, most in allowed.items())
+        return {key: meshed[key] / max(most - lost.get(key, 0.0), most / 2) for key, most in allowed.items()}
+
+    def nears(self, excess: Errors, later: bool) -> bool:
+        """Whether errors exceed what is allowed by so little that a mesh halfway to the next one is likely to do;
+        ``later``: not on the first mesh whose errors are known."""
+        most, of_shear = self.nearly
+        return all(each <= (of_shear if later and key in SHEARS else most) for key, each in excess.items())
 
     @abstractmethod
     def answer(self, level: L) -> LastLevel:
@@ -154,7 +163,9 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
     clock, errors = problem.clock, Errors()
     shares: dict[str, Errors] = {}
     meshes, iterations, spent = 0, 0, 0.0
-    for mesh in problem.meshes:
+    place, last = 0.0, len(problem.meshes) - 1
+    while True:
+        mesh = _mesh_at(problem.meshes, place)
         if level:
             likely = problem.likely(level, len(problem.cells(level, mesh)), spent)
             if likely == math.inf or (meshes > 1 and likely > _SHARE * clock.remaining()):
@@ -163,6 +174,7 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
         before, level = level, problem.solve(level, mesh)
         spent, meshes = clock.cost().cpu_s - began, meshes + 1
         iterations += level.history.iterations if level.history else 0
+        halfway = False
         if before and meshes > problem.coarse:
             meshed, stepped = problem.mesh_errors(level, before), problem.step_errors(level)
             shares = {"discretisation": meshed} | ({"steps": stepped} if stepped else {})
@@ -170,9 +182,13 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
             known = max(errors[key] for key in problem.telling)
             cells = f"{len(level.vertices) - 1:,} cells"
             progress(f"mesh {meshes}: {cells}, {', '.join(problem.telling)} known to {known:.1e} a")
-            if problem.enough(meshed, stepped):
+            excess = problem.excess(meshed, stepped)
+            if max(excess.values()) <= 1:
                 break
-    assert level is not None
+            halfway = place % 1 == 0 and problem.nears(excess, meshes > problem.coarse + 1)
+        if place == last:
+            break
+        place = place + 0.5 if halfway else math.floor(place) + 1
     widths, places, scene = np.diff(level.vertices), problem.places(level), problem.scene
     lost, notes = begun(errors, level.history, widths, problem.start, lambda state: on_cells(state.p, places) / scene.P)
     if lost:
@@ -180,6 +196,12 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
         errors = {key: error + lost.get(key, 0.0) for key, error in errors.items()}
     counts = {"meshes": meshes, "iterations": iterations}
     return _result(problem, level, errors, shares, counts, notes), level
+
+
+def _mesh_at(meshes: Sequence[tuple[float, float]], place: float) -> tuple[float, float]:
+    """Size and growth at a ``place`` in ``meshes``, between two of them their geometric mean."""
+    (size, growth), (finer, less) = meshes[math.floor(place)], meshes[math.ceil(place)]
+    return math.sqrt(size * finer), math.sqrt(growth * less)
 
 
 def _result(

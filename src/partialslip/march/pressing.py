@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.friction.normal import Presses
+from partialslip.friction.normal import Near, Presses
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.mean_pressure import Mean, common
 from partialslip.march.cells import forces
-from partialslip.scene import Scene
+from partialslip.scene import Pressing, Scene
 
 _STAGES = (0.25, 0.5, 0.75)  # accuracy: of the way between load points, at which the contact is looked up
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
@@ -97,5 +97,15 @@ class NormalLoads:
         scene, places = self.scene, self.frame.places(vertices)
         middle, half = (places[1:] + places[:-1]) / 2, np.diff(places)[:, None] / 2
         gap = scene.profile.gap_at(middle[:, None] + half * _NODES) @ (_WEIGHTS / 2)
+        unit = scene.material.A * scene.P  # of displacement
         arms = None if scene.M is None else (middle - scene.origin) / scene.length
-        return Presses(compliance, gap / (scene.material.A * scene.P), arms)
+
+        def start(P: float, M: float) -> Near:
+            """The cells that half-planes have in contact, and their angle."""
+            force, moment = scene.P * P, scene.P * (P * scene.origin + M * scene.length)
+            found = contact(scene, Pressing(force, None if scene.M is None else moment))
+            left, right = found.ends
+            sides = np.where((middle > left) & (middle < right), 0, -1).astype(np.int8)
+            return sides, found.tilt * scene.length / unit
+
+        return Presses(compliance, gap / unit, arms, start)

@@ -20,6 +20,7 @@ from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
+from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, within
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
@@ -40,22 +41,28 @@ _CELLS, _SOMEWHERE = 4.0, 0.5  # accuracy: a zone of fewer cells is unresolved: 
 _NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
 _SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
 _INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
+# cost: Excess of errors up to which the next mesh is halfway, which mostly divides them by 4 to 20; the same of q, q1
+# and q2 after the first step, when halfway meshes hardly reduce the estimates of these
+_NEARLY = 3.0, 0.7
 _PASSING = 32.0  # cost: the same at kinks that neither q1 nor q2 has, and at kinks of the coefficient of friction
 _WORK = 5e11  # limit: cells^3 times load steps of a mesh
-# accuracy: Errors of m and n, as parts of the change from mesh to mesh and of growth^3; the same part of ends that
-# are soft, over their stiffness, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the
-# end is
-_MOVED, _CUBIC, _CUBIC_OF_SOFT = 0.1, 0.15, 0.05
+_LEG = 6.0  # cost: work of a leg that is followed while cells touch and open, over that of a load step (measured)
+_HALVED = 1.7  # accuracy: growth that is less reduced is that of a halfway mesh: 2 times is usual, sqrt(2) halfway
+# accuracy: Errors of m and n, as parts of the change to the next mesh and to a halfway one (measured:
+# benchmarks/estimates.py), and of growth^3; the same part of ends that are soft, over their stiffness, 1 in Hertz
+# contacts: an error of the loads moves an end the more the less stiff the end is
+_MOVED, _CUBIC, _CUBIC_OF_SOFT = (0.1, 0.43), 0.15, 0.05
 # accuracy: The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced
 # with the zone: only growth is halved from mesh to mesh, and errors are of second order in it
-_CARRIED = 1 / 3
+_CARRIED = 1 / 3, 1.0
 # accuracy: The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's
 # size; and parts of the change of q, which is locked in where the zone has moved, by the share of such points
 # (measured)
 _TURNED, _CAUGHT_UP, _LOCKED = 2.0, 0.5, 0.2
 # accuracy: cells inside an end of the stick zone from which its stiffness is found; least stiffness
 _FITTED, _SOFTEST = 4, 1e-3
-_CHANGED = (0.4, 0.35)  # accuracy: errors of q, q1 and q2 as parts of the change to the second mesh and to later meshes
+# accuracy: errors of q, q1 and q2 as parts of the change to the second mesh, to later meshes, and to halfway ones
+_CHANGED, _CHANGED_HALFWAY = (0.4, 0.35), 0.5
 # accuracy: the same where slip turns round, in those: what the way locks in does not fall with each mesh (measured: of
 # 196 scenes 13 were beyond, at most 3.9 times)
 _LOCKED_IN = 2.0
@@ -68,6 +75,7 @@ class SimilarLevel(driver.Level):
     in P.
     ``pressed`` are the normal forces, ``kinks`` are those of q at the load points; ``stepped`` are errors due to the
     load steps, from the mesh on which these were chosen last. ``number``: of the mesh, from 0; ``growth``: its growth.
+    ``trail``: where load steps on the next mesh begin.
     """
 
     pressed: Array
@@ -75,6 +83,7 @@ class SimilarLevel(driver.Level):
     stepped: Errors = field(default_factory=dict)
     number: int = 0
     growth: float = 0.0
+    trail: Trail | None = None
 
     @property
     def zone(self) -> tuple[float, ...]:
@@ -95,6 +104,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
     :func:`partialslip.march.method.solve`."""
 
     telling = ("m", "n")
+    nearly = _NEARLY
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock, added: Added | None) -> None:
         self.added, self.normal, path = added, NormalLoads.of(scene), load_path(scene, plan, start)
@@ -110,7 +120,11 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         return _cells(self._ends, self._inner, self._passing, level, *mesh)
 
     def likely(self, level: SimilarLevel, count: int, spent: float) -> float:
-        if not level.history or level.history.load_steps * count**3 > _WORK:
+        history = level.history
+        if not history:
+            return math.inf
+        one = _LEG if history.path.followed and history.path.presses_anew else 1.0
+        if one * history.load_steps * count**3 > _WORK:
             return math.inf
         return super().likely(level, count, spent)
 
@@ -121,7 +135,9 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         first = number == self.coarse
         choose = first or (steps_matter(stepped, self.scene.fem.accuracy) and not self.clock.limited)
         cells = self.cells(level, mesh)
-        found = _solve_level(self.normal, self.path, self.start, cells, self.clock, choose, self.added)
+        found = _solve_level(
+            self.normal, self.path, self.start, cells, self.clock, choose, self.added, level.trail if level else None
+        )
         if first and found.history:
             self.path = found.history.path
         return replace(found, stepped=found.stepped or stepped, number=number, growth=mesh[1])
@@ -210,6 +226,7 @@ def _solve_level(
     clock: Clock,
     choose: bool,
     added: Added | None,
+    before: Trail | None,
 ) -> SimilarLevel:
     scene, frame = normal.scene, normal.frame
     if not path:
@@ -239,16 +256,24 @@ def _solve_level(
 
         if path.presses_anew:
             presses = normal.presses(vertices, normally)
-            along = partial(coulomb_varying_pressure.march, x, tangential, moved, f, presses)
+            trail = Trail(x, before)
+            along = partial(coulomb_varying_pressure.march, x, tangential, moved, f, presses, trail=trail)
             history, stepped = follow_or_step(along, path, scene.fem.accuracy, errors if choose else None)
         else:
+            trail = None
             history = coulomb_constant_pressure.march(tangential, moved, normal.forces(frame, vertices), f, path)
             stepped = {}
         inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
         inner.append(history.turning(x))
         forces = normal.forces(normal.second, vertices)
         return SimilarLevel(
-            vertices, history, zone(history), forces, tuple(itertools.chain.from_iterable(inner)), stepped
+            vertices,
+            history,
+            zone(history),
+            forces,
+            tuple(itertools.chain.from_iterable(inner)),
+            stepped,
+            trail=trail,
         )
 
 
@@ -274,9 +299,11 @@ def _mesh_errors(normal: NormalLoads, level: SimilarLevel, before: SimilarLevel,
     moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
     between = np.maximum(_CUBIC, _CUBIC_OF_SOFT / _stiffness(level)) * level.growth**3 * np.minimum(_NEAR * gap, 1.0)
     part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
-    known = np.maximum(unseen, np.maximum(part * moved, between))
+    halfway = not first and before.growth < _HALVED * level.growth
+    changed = _CHANGED_HALFWAY if halfway else _CHANGED[not first]
+    known = np.maximum(unseen, np.maximum(part[halfway] * moved, between))
     changes = {
-        key: _CHANGED[not first] * _apart(level, of, before.history, before.vertices, 2 if key == "q" else 1)
+        key: changed * _apart(level, of, before.history, before.vertices, 2 if key == "q" else 1)
         for key, of in SHEARS.items()
     }
     if level.history.turns:
