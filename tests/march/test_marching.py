@@ -5,8 +5,10 @@ import itertools
 import numpy as np
 import pytest
 from flats import beside_the_flat
+from varying_scenes import varying
 
 import partialslip
+from partialslip.bars import BARS
 from partialslip.halfplane import contact, one_step_zone
 from partialslip.march import similar as marching
 from partialslip.verify.hard_cases.scenes import hard_scene
@@ -265,3 +267,24 @@ def test_ends_that_are_all_as_stiff_as_under_hertz_pressure_are_seen(monkeypatch
     """Deliberate fault: the estimate does not know how soft an end is."""
     monkeypatch.setattr(marching, "_stiffness", lambda _: np.ones(2))
     assert of_the_soft_end(monkeypatch, 0.6, 0.54, 0.669) > 2
+
+
+HALFWAY = {
+    "constant P": partialslip.load_scene("flat-rounded"),
+    "varying P": varying((0.8, 1.0), 1.2, 0.3, accuracy=5e-4),
+}
+
+
+@pytest.mark.parametrize("name", list(HALFWAY))
+def test_errors_that_are_nearly_small_enough_take_a_mesh_halfway(monkeypatch, name):
+    """It has little more than half of the cells of the next mesh, and errors are within estimates that are as small as
+    asked for."""
+    scene = HALFWAY[name]
+    outcome = partialslip.run(scene, ["exact", "march"])
+    comparison, result = outcome.comparisons["march"], outcome.results["march"]
+    for key in ("m", "n", "q"):
+        assert getattr(comparison, key) <= result.estimate[key] <= BARS[key] * scene.fem.accuracy
+    monkeypatch.setattr(marching.SimilarBodies, "nearly", (0.0, 0.0))
+    whole = partialslip.run(scene, ["march"]).results["march"]
+    assert whole.counts["meshes"] == result.counts["meshes"]
+    assert 0.5 < result.counts["cells"] / whole.counts["cells"] < 0.65

@@ -8,10 +8,11 @@ from varying_scenes import varying
 
 from partialslip import parse_scene, run
 from partialslip.friction import coulomb_varying_pressure as stepping
-from partialslip.friction.load_path import Path, stretched
-from partialslip.friction.normal import Presses
+from partialslip.friction.load_path import Path, scaled_pressing, stretched
+from partialslip.friction.normal import Presses, press
 from partialslip.judge.verdict import Outcome
 from partialslip.march.cells import compliance, graded_cells
+from partialslip.march.pressing import NormalLoads
 
 A1, A2 = 0.8, 1.0
 P1, P2 = (math.pi * a**2 / 2 for a in (A1, A2))
@@ -50,6 +51,23 @@ def test_shear_in_proportion_to_pressure_needs_one_step():
         found = history(ratio * (P2 - P1), 0.0, steps, f=0.5)
         assert norm(found.change - ratio * pressed) < 1e-10 * norm(pressed)
         assert found.slipped.max() < 1e-9
+
+
+@pytest.mark.parametrize("e", [(0.0, 0.0), (0.05, -0.1)])
+def test_half_planes_know_which_cells_touch(e):
+    """The closed form tells where pressing begins: a solve or two, as the cells' angle differs a little, lead to the
+    forces that are found from nothing in more."""
+    scene = varying((A1, A2), 0.5, 0.3, e)
+    normal = NormalLoads.of(scene)
+    vertices = graded_cells(np.array([-1.0, 1.0]), 1e-3, 0.1)
+    C, (loads, others) = compliance(vertices / 2), scaled_pressing(scene)
+    presses = normal.presses(vertices, C)
+    for P, M in (loads, others, np.add(loads, others) / 2):
+        if (P, M) == (1.0, 0.0):  # all cells touch
+            continue
+        found, alone = presses(P, M), press(C, presses._problem[1], P, presses._arms, M)
+        assert found.iterations <= 3 < alone.iterations
+        assert np.abs(found.x - alone.x).max() < 1e-12
 
 
 TENSION = 0.15 * (P2 - P1), 0.1
