@@ -73,10 +73,12 @@ def turned_under_mean_loads(method, accuracy):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("method", "accuracy"), [("march", 1e-3), ("fem", 5e-4)])
-def test_kinks_where_an_end_turned_round_under_mean_loads(method, accuracy, monkeypatch):
+@pytest.mark.parametrize("method", ["march", "fem"])
+def test_kinks_where_an_end_turned_round_under_mean_loads(method, monkeypatch):
     """Beside the points that never slip others creep for some cycles, and stick in the steady state as well. What a
-    large element leaves of the kink depends on where in it the kink lies: fem's at 1e-3 leaves a quarter."""
+    large element leaves of the kink depends on where in it the kink lies: fem's at 1e-3 leaves a quarter, and march's
+    halfway mesh a third."""
+    accuracy = 5e-4
     off, ratio, size = turned_under_mean_loads(method, accuracy)
     assert ratio < 1
     # deliberate fault: nodes that creep slip for ever
