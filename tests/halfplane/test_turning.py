@@ -60,12 +60,12 @@ def test_methods_agree_on_the_points_that_never_slip(method, more):
     assert -found.m < found.permanent[0] - 1e-3 * found.a
 
 
-def turned_under_mean_loads(method, accuracy):
+def turned_under_mean_loads(method):
     """Error of q, that over its estimate, and the size of the cell where an end turned round."""
     usual = partialslip.load_scene("hertz-shear")
     f, P = usual.friction.f, usual.P
     Q, sigma = np.array([-0.7765, 0.4502]) * f * P, np.array([1.2855, -4.1894]) * f * 4e8
-    loads = {"load.Q": Q.tolist(), "load.sigma": sigma.tolist(), "fem.accuracy": accuracy}
+    loads = {"load.Q": Q.tolist(), "load.sigma": sigma.tolist(), "fem.accuracy": 5e-4}
     found, true = partialslip.run(usual.replace(loads), [method, "exact"]).results.values()
     off = norm_errors(found.traction, true.traction, f, ("q",))["q"]
     at = np.searchsorted(found.traction.cells, true.permanent[1])
@@ -78,12 +78,11 @@ def test_kinks_where_an_end_turned_round_under_mean_loads(method, monkeypatch):
     """Beside the points that never slip others creep for some cycles, and stick in the steady state as well. What a
     large element leaves of the kink depends on where in it the kink lies: fem's at 1e-3 leaves a quarter, and march's
     halfway mesh a third."""
-    accuracy = 5e-4
-    off, ratio, size = turned_under_mean_loads(method, accuracy)
+    off, ratio, size = turned_under_mean_loads(method)
     assert ratio < 1
     # deliberate fault: nodes that creep slip for ever
     monkeypatch.setattr(History, "still", History.never_slips)
-    farther, ratio, larger = turned_under_mean_loads(method, accuracy)
+    farther, ratio, larger = turned_under_mean_loads(method)
     assert farther > 5 * off
     assert ratio > 1 or method == "fem"  # whose other errors cover this one on some meshes
     assert larger > 4 * size

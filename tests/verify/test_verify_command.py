@@ -66,7 +66,7 @@ def test_a_missed_bar_is_exit_1(tmp_path, capsys, monkeypatch):
 @pytest.mark.fault
 def test_estimates_that_are_too_small_are_seen(tmp_path, capsys, monkeypatch):
     """Deliberate fault: march takes its errors of m and n for a thousandth of what they are. No bar is missed."""
-    for name in ("_MOVED", "_CARRIED", "_CUBIC", "_SQUARE_OF_SOFT"):
+    for name in ("_MOVED", "_CARRIED", "_CUBIC", "_CUBIC_OF_SOFT", "_SQUARE_OF_SOFT"):
         monkeypatch.setattr(marching, name, (1e-3 * np.array(getattr(marching, name))).tolist())
     code, record = verify(tmp_path, "verify", "--suite", "full", "--only", "no-tension")
     assert code == 1

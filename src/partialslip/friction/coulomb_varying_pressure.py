@@ -73,17 +73,15 @@ def march(
     sides: list[Sides] = []
     pressed = [press(*path.begin[3:])]
     attached = _spanned(pressed[0].x)  # nodes that remember where they stuck: those between the ends of the contact
+    trail = trail or Trail(x)
     drift = 0 * x  # displacement of attached nodes that are open, since they opened
 
     def advance(before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
         nonlocal attached, drift
         Q, P, M = (float(load[i]) for i in (0, 3, 4))
         normal = press(P, M)
-        if len(sides) >= first + cycle:
-            near = sides[-cycle]
-        else:
-            starts = trail.starts(len(sides)) if trail else []
-            near = starts[0][1].sides if starts else before.sides
+        taken = len(sides) >= first + cycle
+        near = sides[-cycle] if taken else trail.sides(len(sides), before.sides)
         free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1] - drift
         bound = f * normal.x
         require_carried([Q], float(bound.sum()))
@@ -93,7 +91,7 @@ def march(
         sticks = (normal.x > 0) & (found.sides == 0)
         attached = _spanned(normal.x)
         drift = np.where(attached & (normal.x <= 0), moved - moved[sticks].mean(), 0.0) if sticks.any() else 0 * x
-        if trail and len(sides) < first + cycle:
+        if not taken:
             trail.keep(len(sides), (normal, found))
         pressed.append(normal)
         sides.append(found.sides)

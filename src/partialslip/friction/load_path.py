@@ -10,7 +10,7 @@ from partialslip.arrays import Array
 from partialslip.errors import InputError
 from partialslip.plan import Plan
 from partialslip.result.state import State
-from partialslip.scene import Scene
+from partialslip.scene import Pressing, Scene
 
 # limit: towards a steady state; 0.995 of the largest mean load takes 35, a large load before the cycles 300
 MOST_CYCLES = 200
@@ -158,6 +158,12 @@ def scaled_pressing(scene: Scene) -> tuple[tuple[float, float], ...]:
     """(P, M) at the load points, scaled; M about the line of action of P at the load point ``scene.largest``."""
     P, origin, L = scene.P, scene.origin, scene.length
     return tuple((force / P, ((moment or 0.0) - force * origin) / (P * L)) for force, moment in scene.pressing)
+
+
+def unscaled_pressing(scene: Scene, P: float, M: float) -> Pressing:
+    """Normal force and moment, SI, of ``P`` and ``M`` as of :func:`scaled_pressing`."""
+    force = scene.P * P
+    return Pressing(force, None if scene.M is None else scene.P * scene.length * M + force * scene.origin)
 
 
 def stretched(x: Array, origin: float) -> Array:

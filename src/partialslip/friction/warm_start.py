@@ -31,6 +31,10 @@ class Trail:
             (Solution(touch.astype(float), zero, zero, 0.0, 0), Solution(zero, -slip.astype(float), zero, 0.0, 0)),
         ]
 
+    def sides(self, key: Hashable, otherwise: Sides) -> Sides:
+        """Sides of the nodes in the step at the other nodes; ``otherwise`` if they are not known."""
+        return self._guessed[key][1] if key in self._guessed else otherwise
+
     def keep(self, key: Hashable, found: Pair) -> None:
         """Remember the partition of the step."""
         p, q = found

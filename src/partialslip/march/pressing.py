@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.friction.load_path import unscaled_pressing
 from partialslip.friction.normal import Near, Presses
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.mean_pressure import Mean, common
 from partialslip.march.cells import forces
-from partialslip.scene import Pressing, Scene
+from partialslip.scene import Scene
 
 _STAGES = (0.25, 0.5, 0.75)  # accuracy: of the way between load points, at which the contact is looked up
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
@@ -102,8 +103,7 @@ class NormalLoads:
 
         def start(P: float, M: float) -> Near:
             """The cells that half-planes have in contact, and their angle."""
-            force, moment = scene.P * P, scene.P * (P * scene.origin + M * scene.length)
-            found = contact(scene, Pressing(force, None if scene.M is None else moment))
+            found = contact(scene, unscaled_pressing(scene, P, M))
             left, right = found.ends
             sides = np.where((middle > left) & (middle < right), 0, -1).astype(np.int8)
             return sides, found.tilt * scene.length / unit
