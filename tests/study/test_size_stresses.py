@@ -32,13 +32,14 @@ def with_stresses(entry, fem, half_plane, error=1e-6):
 def stressed_study():
     """A study in which sigma_xx comes near the half-plane with 1/size, and averages of swt with its square."""
     axis = read("bodies.*.width=4a,8a,16a,32a,64a,128a")
+    plain = entries(axis.name, {at: 0.3 * at**-2.0 for at in axis.values})
     found = [
         with_stresses(
             entry,
             {"sigma_xx": 1e8, "swt": 1e6, "swt.line": 5e5},
             {"sigma_xx": 1e8 * (1 - 0.5 / at), "swt": 1e6, "swt.line": 5e5 * (1 + 2 / at**2)},
         )
-        for at, entry in zip(axis.values, entries(axis.name, {at: 0.3 * at**-2.0 for at in axis.values}), strict=True)
+        for at, entry in zip((*axis.values, axis.limit), plain, strict=True)
     ]
     return tables.size_study(scene(), axis, found), axis, found
 
