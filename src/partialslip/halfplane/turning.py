@@ -116,7 +116,7 @@ class Turning:
     @cached_property
     def mean_load_bound(self) -> float:
         """Largest \\|Q_mean\\|/(f P) of a steady state whose half cycle this is: the room that the points that never
-        slip have all along the way (frictional Melan theorem: Klarbring, Ciavarella and Barber, 2007)."""
+        slip have all along the way (frictional Melan theorem: Barber, Klarbring and Ciavarella, 2008)."""
         return gradual_mean_load_bound(self.way)
 
     def loop(self, shares: Array) -> tuple[Array, Array]:
