@@ -117,12 +117,13 @@ def test_the_range_of_stress_comes_near_that_of_the_half_plane_like_m_but_the_me
     sizes = size.along(axis, found)
 
     def order(key):
-        return np.log2(sizes.off[key][:-1] / sizes.off[key][1:])
+        off = sizes.off[key][sizes.size < sizes.limit]
+        return np.log2(off[:-1] / off[1:])
 
     assert order("m") == pytest.approx([2, 2], abs=0.1)
     assert order("principal.line") == pytest.approx([2, 2], abs=0.2)
     assert 0.5 < order("sigma_xx")[0] < order("sigma_xx")[1] < 1.0
-    assert all(sizes.mesh["sigma_xx"] < sizes.off["sigma_xx"] / 10)
+    assert all((sizes.mesh["sigma_xx"] < sizes.off["sigma_xx"] / 10)[:-1])
 
 
 def test_criteria_are_those_that_the_scene_or_the_user_asks_for():
