@@ -191,7 +191,7 @@ def _keys(study: SizeStudy) -> "list[Line2D]":
         name, point = model.name, _POINT | {"marker": _MODELS[model.name]["marker"]}
         entries += [
             (f"{name}, fitted", {"mfc": "black", **point}, PointStatus.FITTED in points),
-            (f"{name}, not fitted", {"mfc": "white", **point}, bool(points - {PointStatus.FITTED})),
+            (f"{name}, not fitted", {"mfc": "white", **point}, bool(points - {PointStatus.FITTED, PointStatus.LIMIT})),
         ]
     for model in study.models:
         fitted = any(trend.law for trend in model.trends)
