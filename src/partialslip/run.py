@@ -14,7 +14,7 @@ from partialslip.allowance import Allowance
 from partialslip.bars import LARGEST, Accuracy, Asked, asked
 from partialslip.errors import InputError
 from partialslip.frame import frame
-from partialslip.halfplane.method import spacing_error
+from partialslip.halfplane.method import has_closed_form, spacing_error
 from partialslip.halfplane.noise import Noise, noise_of
 from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
 from partialslip.judge.outcome import missed_by
@@ -191,7 +191,7 @@ def default_methods(scene: Scene) -> tuple[str, ...]:
     if scene.bodies.equivalent is not None:
         return ("exact", "equivalent")
     if scene.finite:
-        return ("exact" if scene.load.in_phase else "march", "fem")
+        return ("exact" if scene.load.in_phase and has_closed_form(reduced(scene)) else "march", "fem")
     return (reference(scene).method, "fem")
 
 

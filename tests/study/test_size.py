@@ -269,7 +269,7 @@ def test_table_csv_and_figure_mark_the_same_points():
     found = entries(axis.name, {at: 0.3 * at**-2.0 for at in (4.0, 8.0, 16.0, 32.0, 64.0, 128.0)}, [2.0])
     study = tables.size_study(scene(), axis, found)
     headings, rows = tables.differences_table(study, study.models[0])
-    assert headings == ("size", "a", "p0", "mesh")
+    assert headings == ("size", "a", "p_max", "mesh")
     marks = {row[0]: row[1][-1] for row in rows}
     assert marks == {"2": "-", "4": "f", "8": "f", "16": "f", "32": "e", "64": "e", "128": "e"}
     points = list(csv.DictReader(tables.points_csv(study).splitlines()))
@@ -281,7 +281,7 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert [laws[0][key] for key in ("quantity", "kind", *ends)] == ["a", "interpolated", "4.0", "8.0"]
     assert all(f"size {unit}" in table[0] for table in (points, laws))
     assert tables.laws_table(study)[1][0][-1] == "4, 8, 16"
-    assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p0"]
+    assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p_max"]
     assert "not solved: bodies.*.width 2.0, accuracy 1.0: too narrow" in tables.size_notes(study)
     assert "f: fitted" in tables.size_notes(study)
 

@@ -168,7 +168,7 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
         mesh = _mesh_at(problem.meshes, place)
         if level:
             likely = problem.likely(level, len(problem.cells(level, mesh)), spent)
-            if likely == math.inf or (meshes > 1 and likely > _SHARE * clock.remaining()):
+            if likely == math.inf or (meshes > problem.coarse and likely > _SHARE * clock.remaining()):
                 break
         began = clock.cost().cpu_s
         before, level = level, problem.solve(level, mesh)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from partialslip.frame import DataFrame
 
 PATH_DEPENDENT = "path-dependent: slip reverses "
+RATCHETS = "the contact ratchets: there is no steady state"
 FRICTIONLESS = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
 
 Regime = Literal[
@@ -196,8 +197,14 @@ class Result(Drawn):
         """Method, regime, a, m, n and p0, in a line."""
         ends = {"m": self.m, "n": self.n}
         found = ", ".join(f"{key} = {end / self.a:.7g} a" for key, end in ends.items() if end is not None)
-        stick = found or "no stick zone"
+        stick = (found if self.steady else "no steady state") or "no stick zone"
         return f"Result of {self.method}: {self.regime}; a = {self.a:.7g} m, {stick}; p0 = {self.p0:.7g} Pa"
+
+    @property
+    def steady(self) -> bool:
+        """Whether the cycle has a steady state. Where the contact ratchets, [-m, n] is the zone in which \\|dq\\| is
+        below the bound: of the closed form (exact), which no cycle reaches, or of the last cycle (march, fem)."""
+        return self.regime != "ratchets"
 
     @property
     def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:

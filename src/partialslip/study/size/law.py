@@ -32,7 +32,7 @@ class Sizes:
     size : (k,) array
         Values along the axis.
     off : mapping of str to (k,) array
-        Difference by quantity: a and p0 (largest p) relative, m and n as fractions of a, p and q in relative L2, and
+        Difference by quantity: a and p_max (largest p) relative, m and n as fractions of a, p and q in relative L2, and
         stresses (:func:`stress_quantities`) relative to those of the finite elements.
     mesh : mapping of str to (k,) array
         Part of the difference that may be an error of the meshes; NaN if not known.

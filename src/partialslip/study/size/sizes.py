@@ -24,7 +24,7 @@ from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solv
 from partialslip.study.size.law import CLEAR, Sizes
 from partialslip.units import Dimension, Units
 
-DIFFERENCES = ("a", "p0", "p", "m", "n", "q")
+DIFFERENCES = ("a", "p_max", "p", "m", "n", "q")
 _COARSER = 8.0  # accuracy: ratio of the accuracies of two successive meshes
 _FINER = 3  # limit: largest number of additional meshes where the half-plane's difference is not clear
 _FINEST = 1e-8  # limit: finest accuracy that rounding allows
@@ -206,9 +206,9 @@ def _dofs(entry: Sized) -> int | None:
 
 
 def _estimate(result: ResultRecord) -> dict[str, float]:
-    """Return the error estimates of a ``result`` by quantity; that of p for p0."""
+    """Return the error estimates of a ``result`` by quantity; that of p for p_max."""
     found = {key: error for key, error in result.estimate.items() if error is not None}
-    return found | ({"p0": found["p"]} if "p" in found else {})
+    return found | ({"p_max": found["p"]} if "p" in found else {})
 
 
 def _off(entry: Sized) -> dict[str, float]:
@@ -216,7 +216,7 @@ def _off(entry: Sized) -> dict[str, float]:
     assert entry.run
     fem, plain, errors = entry.run.methods["fem"], _half_plane(entry.run), entry.run.comparison["fem"].errors
     a = plain.a or math.nan
-    found = {"a": (fem.a or math.nan) / a - 1, "p0": (fem.p_max or math.nan) / (plain.p_max or math.nan) - 1}
+    found = {"a": (fem.a or math.nan) / a - 1, "p_max": (fem.p_max or math.nan) / (plain.p_max or math.nan) - 1}
     for key, end, true in (("m", fem.m, plain.m), ("n", fem.n, plain.n)):
         if end is not None and true is not None:
             found[key] = (end - true) / a
@@ -235,8 +235,8 @@ def _left(entry: Sized) -> tuple[dict[str, float], dict[str, float]]:
         return {}, {}
     errors = entry.equivalent.comparison["equivalent"].errors
     shares = entry.equivalent.methods["equivalent"].shares.get("rig", {})
-    left = {key: errors.get("p_max" if key == "p0" else key) for key in DIFFERENCES}
-    rig = {key: shares.get("p" if key == "p0" else key) for key in DIFFERENCES}
+    left = {key: errors.get(key) for key in DIFFERENCES}
+    rig = {key: shares.get("p" if key == "p_max" else key) for key in DIFFERENCES}
     return _known(left), _known(rig)
 
 
