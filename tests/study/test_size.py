@@ -406,3 +406,10 @@ def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path)
         assert trend(sizes, quantity).law.k == pytest.approx(2, abs=0.1)
     meshes = [sum(entry.labels["bodies.*.width = bodies.*.height"] == each for entry in found) for each in sizes.size]
     assert meshes[0] < meshes[-1]
+
+
+def test_the_former_name_of_the_largest_pressure_is_deprecated():
+    axes = [read(text) for text in ("bodies.lower.width=4a,8a", "bodies.lower.height=4a,8a")]
+    with pytest.warns(DeprecationWarning, match="p0: the largest pressure is now p_max"):
+        former = size.grid(axes, [], "p0")
+    np.testing.assert_array_equal(former[2], size.grid(axes, [], "p_max")[2])

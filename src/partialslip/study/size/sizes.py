@@ -1,6 +1,7 @@
 """Sweeps over sizes of bodies, or other settings of a scene: half-planes compared with finite elements."""
 
 import math
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from itertools import starmap
@@ -16,6 +17,7 @@ from partialslip.batch.sweep import SweepProgress, work_through
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import SIGMA, off_by
 from partialslip.groups import grouped
+from partialslip.judge.known import error_of
 from partialslip.record import Record
 from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
@@ -151,7 +153,7 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
     """
     run = meshes[-1].run
     assert run
-    found, estimate, beside = _off(meshes[-1]), _estimate(run.methods["fem"]), _estimate(_half_plane(run))
+    found, estimate, beside = _off(meshes[-1]), _estimate(run.methods["fem"]), _half_plane_errors(run)
     coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
     rough = _off(coarser[-1]) if coarser else {}
     changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in DIFFERENCES}
@@ -211,6 +213,12 @@ def _estimate(result: ResultRecord) -> dict[str, float]:
     return found | ({"p_max": found["p"]} if "p" in found else {})
 
 
+def _half_plane_errors(run: Record) -> dict[str, float]:
+    """Return the error estimates of the half-planes of a ``run`` by quantity; NaN where they have none."""
+    name, result = next((name, found) for name, found in run.methods.items() if name != "fem")
+    return {key: error_of(result, key, name) for key in DIFFERENCES}
+
+
 def _off(entry: Sized) -> dict[str, float]:
     """Return the change from the half-plane at one point on one mesh, by quantity."""
     assert entry.run
@@ -247,8 +255,11 @@ def _known(values: Mapping[str, float | None]) -> dict[str, float]:
 def grid(axes: Sequence[Axis], entries: Iterable[Sized], quantity: str) -> tuple[Array, Array, Array]:
     """Return the values of two ``axes`` and the absolute change of ``quantity``, (second, first), from ``entries``.
 
-    NaN where not solved.
+    NaN where not solved. The former name ``p0`` of ``p_max`` is deprecated.
     """
+    if quantity == "p0":
+        warnings.warn("p0: the largest pressure is now p_max; p0 is 2 P/(pi a)", DeprecationWarning, stacklevel=2)
+        quantity = "p_max"
     x, y = (np.array(each.values) for each in axes)
     points = {
         point: _differences(meshes)[HALF_PLANE][0].get(quantity, math.nan)
