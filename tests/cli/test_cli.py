@@ -100,6 +100,7 @@ def test_an_exact_run_says_what_it_found(exact):
         "m, n: 0.6324555 a, 0.6324555 a",
         "a: 1 mm",
         "p0: 400 MPa",
+        "p_max: 400 MPa",
         "largest |q1|: 154.9193 MPa",
         "largest |q2|: 154.9193 MPa",
         "largest sigma_xx, 1: 309.8387 MPa at x = -1 mm",
