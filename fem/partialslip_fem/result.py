@@ -98,6 +98,7 @@ def to_result(
         counts=_counts(solution, adapted, extra),
         certificate=certified,
         last_cycle_change=change,
+        net_slip=history.ratchets if history and history.repeats else None,
         estimate=estimate,
         shares={name: share for name, share in shares.items() if share},
         notes=found.notes

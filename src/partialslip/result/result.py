@@ -88,6 +88,9 @@ class Result(Drawn):
         Residuals in f p0 (p0 for the normal problem); equilibrium relative to the load.
     last_cycle_change : float or None
         Largest change of q over the last cycle, in f p0; None if no whole cycle was followed.
+    net_slip : float or None
+        Largest slip that the last cycle adds up to, in the slip of half a cycle: zero in a steady state; None if no
+        cycle was followed whose tractions repeat.
     estimate : mapping of str to float
         The method's error estimates: ``a``, ``m``, ``n``, ``left``, ``right`` as fractions of a; ``p``, ``q``, ``q1``,
         ``q2`` as relative L2 errors of cell averages.
@@ -145,6 +148,7 @@ class Result(Drawn):
     limits: Mapping[str, float] = field(default_factory=dict)
     certificate: Mapping[str, float] = field(default_factory=dict)
     last_cycle_change: float | None = None
+    net_slip: float | None = None
     estimate: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     bodies: tuple[DeformedBody, ...] = ()
