@@ -98,6 +98,7 @@ def to_result(
         counts=_counts(solution, adapted, extra),
         certificate=certified,
         last_cycle_change=change,
+        net_slip=history.ratchets if history and history.repeats else None,
         estimate=estimate,
         shares={name: share for name, share in shares.items() if share},
         notes=found.notes
@@ -130,11 +131,15 @@ def _plates(problem: ScaledProblem, adapted: Adapted, scene: Scene) -> Plates | 
     """Plates of two finite bodies, in SI units."""
     if not (found := plates_of(problem, adapted.solution)):
         return None
-    A, P = scene.material.A, scene.P
+    A, P, load = scene.material.A, scene.P, scene.load
     off = displacement_error(adapted.solution, found, adapted.plates_error)
+    moved = A * P * found.displacement
+    if load.displacement is not None:  # known, however many cycles were skipped: less what the spring gives way
+        given = np.array(load.driving) - (P * found.at_points / load.spring if load.spring else 0.0)
+        moved = given[list(load.ends)]
     return Plates(
         at_points=P * found.at_points,
-        displacement=A * P * found.displacement,
+        displacement=moved,
         approach=A * P * found.approach,
         compliance=A * found.compliance,
         loop=found.loop * [A * P, P],

@@ -302,6 +302,12 @@ def test_families_follow_bodies_and_loads():
     pad = "bodies.upper={kind='pad', width=12e-3, height=5e-3"
     assert family(pad + "}") == "finite"
     assert family(pad + ", support='pivot', pivot_height=1e-4}") == "pivot"
+    driven = (
+        "load={P=135750.0, displacement=[-2e-6, 2e-6]}",
+        pad + ", support='sides'}",
+        "bodies.lower={width=4e-2, height=4e-3, support='roller'}",
+    )
+    assert family(*driven) == "finite, plates moved"
 
 
 def test_a_price_follows_no_gradual_way(monkeypatch):

@@ -261,7 +261,7 @@ def test_table_csv_and_figure_mark_the_same_points():
     found = entries(axis.name, {at: 0.3 * at**-2.0 for at in (4.0, 8.0, 16.0, 32.0, 64.0, 128.0)}, [2.0])
     study = tables.size_study(scene(), axis, found)
     headings, rows = tables.differences_table(study, study.models[0])
-    assert headings == ("size", "a", "p0", "mesh")
+    assert headings == ("size", "a", "p_max", "mesh")
     marks = {row[0]: row[1][-1] for row in rows}
     assert marks == {"2": "-", "4": "f", "8": "f", "16": "f", "32": "e", "64": "e", "128": "e", "1.28e+04": "v"}
     points = list(csv.DictReader(tables.points_csv(study).splitlines()))
@@ -275,7 +275,7 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert [laws[0][key] for key in ("quantity", "kind", *ends)] == ["a", "interpolated", "4.0", "8.0"]
     assert all(f"size {unit}" in table[0] for table in (points, laws))
     assert tables.laws_table(study)[1][0][-1] == "4, 8, 16"
-    assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p0"]
+    assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p_max"]
     assert "not solved: bodies.*.width 2.0, accuracy 1.0: too narrow" in tables.size_notes(study)
     assert "f: fitted" in tables.size_notes(study)
 
@@ -401,3 +401,10 @@ def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path)
         assert trend(sizes, quantity).law.k == pytest.approx(2, abs=0.1)
     meshes = [sum(entry.labels["bodies.*.width = bodies.*.height"] == each for entry in found) for each in sizes.size]
     assert meshes[0] < meshes[-1]
+
+
+def test_the_former_name_of_the_largest_pressure_is_deprecated():
+    axes = [read(text) for text in ("bodies.lower.width=4a,8a", "bodies.lower.height=4a,8a")]
+    with pytest.warns(DeprecationWarning, match="p0: the largest pressure is now p_max"):
+        former = size.grid(axes, [], "p0")
+    np.testing.assert_array_equal(former[2], size.grid(axes, [], "p_max")[2])

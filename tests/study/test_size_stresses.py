@@ -144,7 +144,8 @@ def test_criteria_are_those_that_the_scene_or_the_user_asks_for():
         ({"fatigue.distance": 1e-4}, ["ruiz"], "--criterion ruiz: must be another for a study of sizes"),
         ({"fatigue.distance": 1e-4}, ["findley"], "fatigue.k_findley: missing"),
         ({"fatigue.distance": 1e-4}, ["mises"], "criterion 'mises': must be of principal, swt"),
-        ({}, ["swt"], "--criterion swt: must be given only with a table fatigue"),
+        ({}, ["swt"], "--criterion swt: must be given only with a constant in the table fatigue, for example --set"),
+        ({"fatigue": {}}, ["swt"], "must be given only with a constant in the table fatigue"),
     ],
 )
 def test_criteria_that_a_study_cannot_show_are_refused(changes, names, told):
@@ -165,3 +166,7 @@ def test_unlike_bodies_have_stresses_of_finite_elements_alone():
     study = tables.size_study(asking, axis, [found])
     assert 0 < study.models[0].off["a"][0] < 0.1
     assert stresses.in_short(study)[0].startswith("stresses of the half-plane are not known: no method finds them")
+
+
+def test_an_empty_table_fatigue_is_told_what_it_lacks():
+    assert stresses.NOT_ASKED.startswith("no stresses: the table fatigue has no constant")

@@ -3,6 +3,7 @@
 import argparse
 import math
 import time
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,7 @@ from partialslip.errors import InputError
 from partialslip.methods import METHODS
 
 if TYPE_CHECKING:
+    from partialslip.result import Result
     from partialslip.result.state import State
     from partialslip.run import Run
     from partialslip.scene import Scene
@@ -196,10 +198,25 @@ def _paid(price: "Price", budget: float | None, outcome: "Run", began: float) ->
         - began
         + sum(result.cost.meshing_cpu_s for result in outcome.results.values())
     )
-    fem = outcome.results.get("fem")
-    known = max((fem.estimate[key] for key in ("a", "m", "n") if key in fem.estimate), default=0.0) if fem else 0.0
-    reached = [f"a, m and n known to {known:.1e} a"] if known else []
+    reached = [_reached(result) for name, result in outcome.results.items() if name == "fem"]
     return [f"{f'budget of {budget:g} s' if budget else price}; {taken:.2g} CPU s, actual", *reached]
+
+
+def _reached(fem: "Result") -> str:
+    """Return how well ``fem`` knows its ends, in a, as text."""
+    from partialslip.judge.known import error_of
+
+    keys = [key for key in ("a", "m", "n") if getattr(fem, key) is not None]
+    errors = {key: error_of(fem, key, fem.method) for key in keys}
+    known = {key: error for key, error in errors.items() if math.isfinite(error)}
+    lost = [key for key in keys if key not in known]
+    parts = [f"{_listed(known)} known to {max(known.values()):.1e} a"] if known else []
+    return "fem: " + ", ".join([*parts, *([f"no error estimate of {_listed(lost)}"] if lost else [])])
+
+
+def _listed(keys: Iterable[str]) -> str:
+    *before, last = keys
+    return " and ".join(filter(None, [", ".join(before), last]))
 
 
 def _state(outcome: "Run") -> "State":

@@ -25,6 +25,9 @@ _LIMIT = 10.0
 # accuracy: change over a cycle, in f p, that ends cycles near enough to the limit for ratios of changes to tell it
 _NEAR = 1e-6
 _BESIDE = 5  # accuracy: neighbouring nodes of which the one that moves most tells how far the steady state is
+# accuracy: slip, in A times the sum of the bounds, that is rounding: forces are known to 1e-16 of their sum, and the
+# compliance of the finest cells adds up 1e5 of them
+_ROUNDED = 1e-10
 # accuracy: slip of nodes that stay in contact, in that of nodes that open, below which they settle
 _NO_SLIP = 1e-3
 _CREEPS = 0.5  # accuracy: of the path of slip in a cycle: net slip from which on a node creeps
@@ -227,7 +230,7 @@ class History:
         if not held.any():
             return 0.0
         half = float(np.abs(self.slip[held]).max())
-        half = max(half, _NO_SLIP * float(np.abs(self.slip).max()))
+        half = max(half, _NO_SLIP * float(np.abs(self.slip).max()), _ROUNDED * float(self.bound.sum()))
         return float(np.abs(self.net_slip[held]).max()) / half if half > 0 else 0.0
 
     @property

@@ -32,7 +32,7 @@ from partialslip.scene.model import require_carried
 from partialslip.threads import one_thread
 
 _SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
-_RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
+_RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets"
 
 
 @one_thread

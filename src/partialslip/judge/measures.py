@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.judge.means import means, moment, norm_errors, resultants_over_cells
-from partialslip.result import Result, Traction
+from partialslip.result import RATCHETS, Result, Traction
 from partialslip.scene import Scene
 
 NORM = "norm"
@@ -71,7 +71,7 @@ def _absent(quantity: str, reference: Result, scene: Scene) -> str:
     if reference.regime == "sliding":  # q = f p, where it is known
         return "the contact slides" if quantity in ("m", "n", "dQ") else reference.undetermined.get("q", "")
     if reference.regime == "ratchets":
-        return "the contact ratchets: its steady state is not reached"
+        return RATCHETS
     if quantity == "dQ" and not scene.load.in_phase:
         return "Q and sigma are out of phase: dq is the range of q at each point, and need not add up to dQ"
     return ""

@@ -168,7 +168,7 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
         mesh = _mesh_at(problem.meshes, place)
         if level:
             likely = problem.likely(level, len(problem.cells(level, mesh)), spent)
-            if likely == math.inf or (meshes > 1 and likely > _SHARE * clock.remaining()):
+            if likely == math.inf or (meshes > problem.coarse and likely > _SHARE * clock.remaining()):
                 break
         began = clock.cost().cpu_s
         before, level = level, problem.solve(level, mesh)
@@ -241,6 +241,7 @@ def _result(
         },
         certificate=answer.certificate,
         last_cycle_change=answer.change,
+        net_slip=history.ratchets if history and history.repeats else None,
         estimate=errors,
         shares=shares,
         notes=found.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),

@@ -9,6 +9,7 @@ from partialslip.result.fields import SurfaceStress as SurfaceStress
 from partialslip.result.plates import Plates as Plates
 from partialslip.result.result import FRICTIONLESS as FRICTIONLESS
 from partialslip.result.result import PATH_DEPENDENT as PATH_DEPENDENT
+from partialslip.result.result import RATCHETS as RATCHETS
 from partialslip.result.result import EndSlip as EndSlip
 from partialslip.result.result import Regime as Regime
 from partialslip.result.result import Result as Result

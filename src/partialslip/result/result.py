@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from partialslip.frame import DataFrame
 
 PATH_DEPENDENT = "path-dependent: slip reverses "
+RATCHETS = "the contact ratchets: there is no steady state"
 FRICTIONLESS = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
 
 Regime = Literal[
@@ -87,6 +88,9 @@ class Result(Drawn):
         Residuals in f p0 (p0 for the normal problem); equilibrium relative to the load.
     last_cycle_change : float or None
         Largest change of q over the last cycle, in f p0; None if no whole cycle was followed.
+    net_slip : float or None
+        Largest slip that the last cycle adds up to, in the slip of half a cycle: zero in a steady state; None if no
+        cycle was followed whose tractions repeat.
     estimate : mapping of str to float
         The method's error estimates: ``a``, ``m``, ``n``, ``left``, ``right`` as fractions of a; ``p``, ``q``, ``q1``,
         ``q2`` as relative L2 errors of cell averages.
@@ -144,6 +148,7 @@ class Result(Drawn):
     limits: Mapping[str, float] = field(default_factory=dict)
     certificate: Mapping[str, float] = field(default_factory=dict)
     last_cycle_change: float | None = None
+    net_slip: float | None = None
     estimate: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     bodies: tuple[DeformedBody, ...] = ()
@@ -196,8 +201,14 @@ class Result(Drawn):
         """Method, regime, a, m, n and p0, in a line."""
         ends = {"m": self.m, "n": self.n}
         found = ", ".join(f"{key} = {end / self.a:.7g} a" for key, end in ends.items() if end is not None)
-        stick = found or "no stick zone"
+        stick = (found if self.steady else "no steady state") or "no stick zone"
         return f"Result of {self.method}: {self.regime}; a = {self.a:.7g} m, {stick}; p0 = {self.p0:.7g} Pa"
+
+    @property
+    def steady(self) -> bool:
+        """Whether the cycle has a steady state. Where the contact ratchets, [-m, n] is the zone in which \\|dq\\| is
+        below the bound: of the closed form (exact), which no cycle reaches, or of the last cycle (march, fem)."""
+        return self.regime != "ratchets"
 
     @property
     def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:

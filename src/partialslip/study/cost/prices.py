@@ -192,7 +192,7 @@ def price_family(scene: Scene) -> str:
         "varying P": scene.presses_anew,
         "mean loads": load.in_phase and any(sum(each) for each in (load.Q, load.sigma)),
         "out of phase": not load.in_phase,
-        "more loads": len(load.points) > 2 or load.steps > 1 or load.cycles is not None,
+        "more loads": len(load.driving) > 2 or load.steps > 1 or load.cycles is not None,
         "plates moved": load.displacement is not None,
         "slopes": any(load.sigma_slope),
         "f varies": scene.friction.varies,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # display: contours of the change
 _NAMES = {
-    "a": "a", "p0": "p0, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2",
+    "a": "a", "p_max": "p_max, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2",
     "sigma_xx": "sigma_xx, largest",
 }  # fmt: skip
 _COLUMNS = 2  # display: panels side by side: few, to be read on a phone

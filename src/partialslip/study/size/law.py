@@ -36,8 +36,8 @@ class Sizes:
     size : (k,) array
         Values along the axis.
     change : mapping of str to (k,) array
-        Difference by quantity, with a sign where it has one: a and p0 (largest p) relative, m and n as fractions of a,
-        p and q in relative L2, and stresses (:func:`stress_quantities`) relative to those of the finite elements.
+        Difference by quantity, with a sign where it has one: a and p_max (largest p) relative, m and n as fractions of
+        a, p and q in relative L2, and stresses (:func:`stress_quantities`) relative to those of the finite elements.
     mesh : mapping of str to (k,) array
         Part of the difference that may be an error of the meshes; NaN if not known.
     failed : mapping of float to str

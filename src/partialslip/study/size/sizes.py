@@ -1,6 +1,7 @@
 """Sweeps over sizes of bodies, or other settings of a scene: half-planes compared with finite elements."""
 
 import math
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from itertools import starmap
@@ -17,6 +18,7 @@ from partialslip.errors import InputError
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import SIGMA, off_by
 from partialslip.groups import grouped
+from partialslip.judge.known import error_of
 from partialslip.record import Record
 from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
@@ -25,7 +27,7 @@ from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solv
 from partialslip.study.size.law import CLEAR, Sizes
 from partialslip.units import Dimension, Units
 
-DIFFERENCES = ("a", "p0", "p", "m", "n", "q")
+DIFFERENCES = ("a", "p_max", "p", "m", "n", "q")
 _COARSER = 8.0  # accuracy: ratio of the accuracies of two successive meshes
 _FINER = 3  # limit: largest number of additional meshes where the half-plane's difference is not clear
 _FINEST = 1e-8  # limit: finest accuracy that rounding allows
@@ -180,7 +182,7 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
     """
     run = meshes[-1].run
     assert run
-    found, estimate, beside = _off(meshes[-1]), _estimate(run.methods["fem"]), _estimate(_half_plane(run))
+    found, estimate, beside = _off(meshes[-1]), _estimate(run.methods["fem"]), _half_plane_errors(run)
     coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
     rough = _off(coarser[-1]) if coarser else {}
     changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in DIFFERENCES}
@@ -236,9 +238,15 @@ def _dofs(entry: Sized) -> int | None:
 
 
 def _estimate(result: ResultRecord) -> dict[str, float]:
-    """Return the error estimates of a ``result`` by quantity; that of p for p0."""
+    """Return the error estimates of a ``result`` by quantity; that of p for p_max."""
     found = {key: error for key, error in result.estimate.items() if error is not None}
-    return found | ({"p0": found["p"]} if "p" in found else {})
+    return found | ({"p_max": found["p"]} if "p" in found else {})
+
+
+def _half_plane_errors(run: Record) -> dict[str, float]:
+    """Return the error estimates of the half-planes of a ``run`` by quantity; NaN where they have none."""
+    name, result = next((name, found) for name, found in run.methods.items() if name != "fem")
+    return {key: error_of(result, key, name) for key in DIFFERENCES}
 
 
 def _off(entry: Sized) -> dict[str, float]:
@@ -246,7 +254,7 @@ def _off(entry: Sized) -> dict[str, float]:
     assert entry.run
     fem, plain, errors = entry.run.methods["fem"], _half_plane(entry.run), entry.run.comparison["fem"].errors
     a = plain.a or math.nan
-    found = {"a": (fem.a or math.nan) / a - 1, "p0": (fem.p_max or math.nan) / (plain.p_max or math.nan) - 1}
+    found = {"a": (fem.a or math.nan) / a - 1, "p_max": (fem.p_max or math.nan) / (plain.p_max or math.nan) - 1}
     for key, end, true in (("m", fem.m, plain.m), ("n", fem.n, plain.n)):
         if end is not None and true is not None:
             found[key] = (end - true) / a
@@ -265,8 +273,8 @@ def _left(entry: Sized) -> tuple[dict[str, float], dict[str, float]]:
         return {}, {}
     errors = entry.equivalent.comparison["equivalent"].errors
     shares = entry.equivalent.methods["equivalent"].shares.get("rig", {})
-    left = {key: errors.get("p_max" if key == "p0" else key) for key in DIFFERENCES}
-    rig = {key: shares.get("p" if key == "p0" else key) for key in DIFFERENCES}
+    left = {key: errors.get(key) for key in DIFFERENCES}
+    rig = {key: shares.get("p" if key == "p_max" else key) for key in DIFFERENCES}
     return _known(left), _known(rig)
 
 
@@ -277,8 +285,11 @@ def _known(values: Mapping[str, float | None]) -> dict[str, float]:
 def grid(axes: Sequence[Axis], entries: Iterable[Sized], quantity: str) -> tuple[Array, Array, Array]:
     """Return the values of two ``axes`` and the absolute change of ``quantity``, (second, first), from ``entries``.
 
-    NaN where not solved.
+    NaN where not solved. The former name ``p0`` of ``p_max`` is deprecated.
     """
+    if quantity == "p0":
+        warnings.warn("p0: the largest pressure is now p_max; p0 is 2 P/(pi a)", DeprecationWarning, stacklevel=2)
+        quantity = "p_max"
     x, y = (np.array(each.values) for each in axes)
     points = {
         point: abs(_differences(meshes)[HALF_PLANE][0].get(quantity, math.nan))
