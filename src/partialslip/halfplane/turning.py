@@ -15,7 +15,9 @@ from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions
 from partialslip.halfplane.loading import Loading, Worn, loading
+from partialslip.errors import InputError
 from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.steady import UNEVEN_FRICTION
 from partialslip.result import StickZone
 
 _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a slip zone inside is not taken
@@ -232,6 +234,10 @@ def half_cycle(
         way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts)
         sure = not parts or (not way.parted and pressed.friction_bound.convex)
         holds = sure or certificate_of(way).worst < _HELD
+        if holds:
+            return Turning(once, way)
     except LostError:
-        return once
-    return Turning(once, way) if holds else once
+        pass
+    if once.parts:
+        raise InputError(UNEVEN_FRICTION)
+    return once

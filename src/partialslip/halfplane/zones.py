@@ -61,7 +61,7 @@ def stick_zone(
     f_, dQ_, dsigma_, dslope_ = loads
     Qf, sf = np.abs(dQ_) / (2 * f_ * contact.P), np.abs(dsigma_) / (f_ * contact.p0)
     turned = turns_round(Qf, sf, zone.s, -np.abs(zone.centre - contact.centre) / contact.a, zone.half_width / contact.a)
-    turned = (turned | (not contact.friction_bound.convex)) & (dslope_ == 0) & ~zone.slides
+    turned = (turned | (not contact.friction_bound.convex)) & (dslope_ == 0) & ~np.isnan(zone.half_width)
     if not turned.any():
         return zone
     centre, half_width, s = (np.array(values) for values in zone)
