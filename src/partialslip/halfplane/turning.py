@@ -231,7 +231,7 @@ def half_cycle(
     if once.final:
         return once
     try:
-        way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts)
+        way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts and not once.parts)
         sure = not parts or (not way.parted and pressed.friction_bound.convex)
         holds = sure or certificate_of(way).worst < _HELD
         if holds:
