@@ -154,7 +154,9 @@ def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
     if found.cycle.zone.s < 0 or found.cycle.gf or not found.cycle.shape.convex:
         changes = load.dQ, load.dsigma, load.dslope
         try:
-            stages = [loading(pressed, f, *(share * change for change in changes), bound=2) for share in _SHARES.tolist()]
+            stages = [
+                loading(pressed, f, *(share * change for change in changes), bound=2) for share in _SHARES.tolist()
+            ]
         except InputError:  # more than one zone sticks on the way
             return False
         so_far += [stage.traction(x) for stage in stages]

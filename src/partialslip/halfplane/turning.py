@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from partialslip.arrays import Array
+from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate_of
 from partialslip.halfplane.gradual_path.from_zero import MOST_LOADS, from_zero
@@ -15,7 +16,6 @@ from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions
 from partialslip.halfplane.loading import Loading, Worn, loading
-from partialslip.errors import InputError
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import UNEVEN_FRICTION
 from partialslip.result import StickZone

@@ -71,7 +71,7 @@ def stick_zone(
         centre[turned], half_width[turned], s[turned] = (
             contact.centre + side * found.centre,
             contact.a * found.half_width,
-            found.s,
+            np.where(found.s == 0, s[turned], found.s),
         )
         turned[:] = False
     parts = turned.ndim == 0 or not contact.friction_bound.convex
@@ -88,8 +88,8 @@ def stick_zone(
 
 
 def _solved(contact: Contact, loads: list[float], parts: bool) -> tuple[StickZone[float], int]:
-    """The stick zone under ``loads``, for positive changes, and -1 if x is mirrored; NaN if it is not known, or, without
-    ``parts``, if a zone inside slips."""
+    """The stick zone under ``loads``, for positive changes, and -1 if x is mirrored; NaN if it is not known, or,
+    without ``parts``, if a zone inside slips."""
     try:
         cycle = half_cycle(contact, *loads, parts=parts)
     except InputError:  # more than one zone sticks on the way

@@ -21,7 +21,7 @@ from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
-from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, within
+from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, sticking_zones, within
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
 from partialslip.halfplane.stress import SURFACE_REACH, along_surface
@@ -52,7 +52,9 @@ _INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kin
 # cost: Excess of errors up to which the next mesh is halfway, which mostly divides them by 4 to 20; the same of q, q1
 # and q2 after the first step, when halfway meshes hardly reduce the estimates of these
 _NEARLY = 3.0, 0.7
-_PASSING = 32.0  # cost: the same at kinks that neither q1 nor q2 has, and, at most, at kinks of the coefficient of friction
+_PASSING = (
+    32.0  # cost: the same at kinks that neither q1 nor q2 has, and, at most, at kinks of the coefficient of friction
+)
 _WORK = 5e11  # limit: cells^3 times load steps of a mesh
 _LEG = 6.0  # cost: work of a leg that is followed while cells touch and open, over that of a load step (measured)
 _HALVED = 1.7  # accuracy: growth that is less reduced is that of a halfway mesh: 2 times is usual, sqrt(2) halfway
@@ -76,6 +78,7 @@ _CHANGED, _CHANGED_HALFWAY = (0.4, 0.35), 0.5
 # accuracy: the same where slip turns round, in those: what the way locks in does not fall with each mesh (measured: of
 # 196 scenes 13 were beyond, at most 3.9 times)
 _LOCKED_IN = 2.0
+_SEVERAL = "more than one zone sticks, as the coefficient of friction varies"
 Added = Callable[[Array], Array]
 
 
@@ -167,6 +170,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         found = steady_state(scene, history, level.stick, 1.0, x=level.x, common=normal.common if anew else None)
         q1, q2 = (scene.P / frame.a * q / widths for q in (history.q1, history.q2)) if history else (0 * x, 0 * x)
         known = found.centre is not None
+        several = scene.friction.varies and history and sticking_zones(history.bound, history.change) > 1
         before = normal.first if anew else None
         tractions = CellTractions(frame, normal.second, before, level.vertices, q1, q2, known)
         counts = {
@@ -188,6 +192,8 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
             model="two half-planes, exact pressure, cells of constant shear",
             counts=counts,
             contact_ends=(normal.first.ends, normal.second.ends) if anew or frame.centre else None,
+            undetermined=dict.fromkeys("mn", _SEVERAL) if several else {},
+            notes=(f"m, n: {_SEVERAL}: those of the one with the most room are told",) if several else (),
         )
 
 
