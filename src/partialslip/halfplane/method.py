@@ -101,12 +101,13 @@ def solve(
 
 def has_closed_form(scene: Scene) -> bool:
     """Whether the steady state of ``scene``, two similar half-planes under loads in phase, has an exact solution here:
-    by formulas, quadratures or an integral equation; under constant pressure unless sigma_slope is too large."""
-    if not ((scene.presses_anew or scene.load.dslope) and plan(scene).needs("friction")):
+    by formulas, quadratures or an integral equation; under constant pressure unless sigma_slope is too large or f
+    varies so much along x that more than one zone sticks."""
+    if not ((scene.presses_anew or scene.load.dslope or scene.friction.varies) and plan(scene).needs("friction")):
         return True
     try:
         return not closed_form(scene) if scene.presses_anew else bool(_change(scene).cycle)
-    except InputError:  # sigma_slope is too large
+    except InputError:
         return False
 
 

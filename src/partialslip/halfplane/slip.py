@@ -10,10 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array
-from partialslip.halfplane.shape import Rule, Shape, rule_between
+from partialslip.halfplane.shape import Rule, Shape, places_between, rule_between
 from partialslip.result import StickZone
 
 _NODES, _FEWEST = 32, 6  # accuracy: Gauss points in a slip zone, and in each of its pieces
+_HARDLY = 1e-9  # accuracy: width of a slip zone, in a, that is rounding
+_ROUNDING = 1e-9  # accuracy: of slip, in the largest
 _TINY = 1e-300  # accuracy: length that is not zero
 
 
@@ -74,6 +76,22 @@ def slip(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Arr
         result[here] = 2 / np.pi * c * (sign * by_own - (zone.s if side > 0 else 1) * by_other)
         result[here] += gf / 8 * c**2 * (np.sinh(2 * eta[:, 0]) / 2 - eta[:, 0])
     return result
+
+
+def slips_on(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> bool:
+    """Whether all points beside a stick ``zone`` slip in the direction of their traction: at the sharp kinks of p, at
+    places between them, and as close to the stick zone as the nearest kink inside it."""
+    found = []
+    for side, sign in ((1, 1), (-1, zone.s)):
+        beyond = np.abs(side * (np.array(shape.sharp_kinks) - zone.centre) - zone.half_width) / zone.half_width
+        width = 1 - side * zone.centre - zone.half_width
+        if width <= _HARDLY:
+            continue
+        eta = places_between(np.arccosh(1 + beyond), 0.0, float(np.arccosh(1 + width / zone.half_width)))
+        x = zone.centre + side * zone.half_width * np.cosh(eta)
+        found.append(sign * slip(np.clip(x, -1.0, 1.0), zone, shape, gf))
+    slips = np.concatenate([np.zeros(1), *found])
+    return bool(slips.min() >= -_ROUNDING * slips.max())
 
 
 def dissipation(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> tuple[Array, Array, float]:

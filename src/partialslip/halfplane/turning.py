@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from partialslip.arrays import Array
+from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate_of
 from partialslip.halfplane.gradual_path.from_zero import MOST_LOADS, from_zero
@@ -16,6 +17,7 @@ from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions
 from partialslip.halfplane.loading import Loading, Worn, loading
 from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.steady import UNEVEN_FRICTION
 from partialslip.result import StickZone
 
 _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a slip zone inside is not taken
@@ -229,9 +231,13 @@ def half_cycle(
     if once.final:
         return once
     try:
-        way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts)
+        way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts and not once.parts)
         sure = not parts or (not way.parted and pressed.friction_bound.convex)
         holds = sure or certificate_of(way).worst < _HELD
+        if holds:
+            return Turning(once, way)
     except LostError:
-        return once
-    return Turning(once, way) if holds else once
+        pass
+    if once.parts:
+        raise InputError(UNEVEN_FRICTION)
+    return once

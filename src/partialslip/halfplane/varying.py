@@ -13,6 +13,7 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean_pressure import Mean, PressurePath, PressureStage, common
 from partialslip.halfplane.slip import dissipation
+from partialslip.halfplane.steady import admissible
 from partialslip.result import EndSlip
 from partialslip.scene import Hertz, Scene
 
@@ -203,6 +204,8 @@ def steady_cycle(scene: Scene) -> Cycle:
     ends, room = PressureStage(second, mean, change).stick, _ROUNDING * mean.a
     ways: list[EndSlip] = ["forwards" if sign > 0 else "backwards" for sign in change.signs]
     inside = left - room <= ends[0], ends[1] <= right + room
+    if all(inside) and not admissible(change.zone, change.seen, change.gf):
+        inside = False, False
     slips = (ways[0] if inside[0] else "part of the cycle", ways[1] if inside[1] else "part of the cycle")
     if not all(inside):
         return Cycle(scene, first, second, mean, None, slips, False)

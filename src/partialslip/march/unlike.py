@@ -25,7 +25,7 @@ from partialslip.friction.step_errors import Errors, along_path, other_steps, pr
 from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, read_stick_zone, within
 from partialslip.halfplane.tractions import CoupledTractions
 from partialslip.march import driver
-from partialslip.march.cells import graded_cells, norm_parts, on_cells, relative_change
+from partialslip.march.cells import friction_on, graded_cells, nearest, norm_parts, on_cells, relative_change
 from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
@@ -182,14 +182,16 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
             fine, inner = apart(level.fine, _SMALLEST * a), [*level.kinks]
         inner += [(kink - self.scene.origin) / self.scene.length for kink in self.scene.profile.kinks]
         inner += [0.0] if self.punch and self.gap and self.gap.parabolic else []  # there q/p is x ln|x|
-        ends = np.sort(fine)
-        gaps = np.diff(ends)
-        gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps)) / a
-        sizes = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST) * a
+        L, friction = self.scene.length, self.scene.friction
+        bends = [(kink - self.scene.origin) / L for kink in friction.sharp_kinks(a * L)]
+        bends = apart([bend for bend in bends if abs(bend) < far], _SMALLEST * a, fine)[len(fine) :]
+        gap = nearest(np.array([*fine, *bends])) / a
+        sizes = np.maximum(size * np.minimum(_NEAR * gap[: len(fine)], 1.0), _SMALLEST) * a
+        at_bends = np.minimum(_INNER * size, growth * gap[len(fine) :]) * a
         others = [kink for kink in apart(inner, _INNER * size * a, fine)[len(fine) :] if abs(kink) < far]
-        points = np.concatenate([ends, others, [-far, far]])
+        points = np.concatenate([fine, bends, others, [-far, far]])
         wide = growth * (far - self.width)
-        every = np.concatenate([sizes, np.full(len(others), _INNER * size * a), [wide, wide]])
+        every = np.concatenate([sizes, at_bends, np.full(len(others), _INNER * size * a), [wide, wide]])
         order = np.argsort(points)
         return graded_cells(points[order], every[order], growth)
 
@@ -229,7 +231,7 @@ def _solve_on(
         line = coulomb_coupled.Nodes(x, widths, ends, None, stages is not None, near=near, stages=stages, under=under)
         moved = stretched(x, scene.origin / L)
         stretch, allowed = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
-        f = scene.friction.at(x * L + scene.origin)
+        f = friction_on(scene.friction, vertices * L + scene.origin)
         history, pressing, first = coulomb_coupled.march(C, gap, stretch, moved[1], f, path, begins, line, allowed)
         at_points = tuple(ends(p, q) for p, q in zip(history.pressures, (history.q1, history.q2), strict=True))
         level = UnlikeLevel(vertices, history, None, pressing, first, at_points)  # type: ignore[arg-type]
