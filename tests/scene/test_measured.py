@@ -127,7 +127,8 @@ def test_units_without_brackets_are_read(tmp_path, line):
 
 
 @pytest.mark.parametrize(("line", "word"), [
-    ("Unit: mm", "mm"), ("Length mm, Depth", "mm"), ("Length, Depth um", "um"), ("Length mm, Depth um, raw", "mm"),
+    ("Unit: mm", "mm"), ("Length mm, Depth", "mm"), ("Length, Depth um", "um"), ("Length, Depth [um]", "um"),
+    ("x [mm], gap", "mm"), ("Length mm, Depth um, raw", "mm"),
     ("x (millimetres), gap (microns)", "millimetres"), ("x [mm], gap (um, raw)", "mm"), ("Length mil,Depth mil", "mil"),
     ("lengths in micrometers", "micrometers"), ("x inch gap inch", "inch"),
 ])  # fmt: skip
@@ -161,6 +162,11 @@ def test_units_that_contradict_or_are_unknown_are_refused(tmp_path, monkeypatch,
     monkeypatch.chdir(tmp_path)
     assert message in line_of(scene_of, Path(), *points(2e-7), text, lines)
     scene_of(Path(), *points(2e-7), SCENE, ("x [mm], gap [mil]",))  # the scene says what the heading does not
+
+
+def test_columns_in_the_wrong_order_are_refused(tmp_path):
+    told = line_of(scene_of, tmp_path, *points(2e-7), WITHOUT, ("gap [um], x [mm]",))
+    assert told.endswith("pad.csv: heading 'gap [um], x [mm]': the columns must be x, then gap")
 
 
 HALF = SCENE.replace("sigma = [-60e6, 60e6]", "")

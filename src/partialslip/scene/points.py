@@ -40,9 +40,12 @@ def column_units(file: str, given: float | tuple[float, ...] | None, length: flo
     Raises
     ------
     InputError
-        If ``given`` is not that of the heading, or nothing is given and the heading names units that cannot be read.
+        If ``given`` is not that of the heading, nothing is given and the heading names units that cannot be read, or
+        the heading names x as the second column.
     """
     lines = _heading(file)
+    if swapped := next((line for line in lines if _is_swapped(line)), ""):
+        raise InputError(f"profile.file: {file}: heading {swapped.strip()!r:.60}: the columns must be x, then gap")
     words = next(filter(None, map(_stated, reversed(lines))), [])
     known = [LENGTHS.get(word.strip().lower()) for word in words]
     shown = " and ".join(f"[{word}]" for word in words)
@@ -85,13 +88,25 @@ def _stated(line: str) -> list[str]:
     known = all(word.strip().lower() in LENGTHS for word in words)
     if len(words) == _COLUMNS and (known or all(square for square, _ in _BRACKETS.findall(line))):
         return words
-    cells = [names for cell in _CELLS.split(line) if (names := _WORD.findall(cell))]
+    cells = _cells(line)
     last = [names[-1] for names in cells]
     if len(cells) == 1:
         last = [word for word in cells[0] if word.lower() in LENGTHS.keys() - _ENGLISH]
     if len(last) == _COLUMNS and all(word.lower() in LENGTHS for word in last):
         return last
-    return words if len(words) == 1 and known and not _unread(line.replace(words[0], "", 1)) else []
+    alone = len(words) == 1 and len(cells) == 1 and known and not _unread(line.replace(words[0], "", 1))
+    return words if alone else []
+
+
+def _cells(line: str) -> list[list[str]]:
+    """Words of each column in a ``line`` of the heading."""
+    return [words for cell in _CELLS.split(line) if (words := _WORD.findall(cell))]
+
+
+def _is_swapped(line: str) -> bool:
+    """Whether a ``line`` of the heading names x as the second of two columns."""
+    first = [words[0].lower() for words in _cells(line)]
+    return len(first) == _COLUMNS and first[1] == "x" != first[0]
 
 
 def _unread(line: str) -> str:
