@@ -111,10 +111,19 @@ def changed(text, random):
         word = WORDS[random.integers(len(WORDS))]
         parts = re.split(r"([,; ]+)", lines[at])
         parts[random.integers(len(parts))] = word
-        ways = [lines[:at] + lines[at + 1 :], lines[: at + 1] + lines[at:], lines[:at] + [word] + lines[at:],
-                lines[:at] + ["".join(parts)] + lines[at + 1 :], lines[:at] + [lines[to]] + lines[at + 1 :],
-                lines + lines[at:], lines[:at] + lines[max(at, to) :], lines[at:] + lines[:at]]  # fmt: skip
-        lines = ways[random.integers(len(ways))] or [""]
+        end = len(lines)
+        ways = [
+            *((at, at + 1, []), (at, at, [lines[at]]), (at, at, [word]), (at, at + 1, ["".join(parts)])),
+            *(
+                (at, at + 1, [lines[to]]),
+                (end, end, lines[at:]),
+                (at, max(at, to), []),
+                (0, end, lines[at:] + lines[:at]),
+            ),
+        ]
+        begin, end, new = ways[random.integers(len(ways))]
+        lines[begin:end] = new
+        lines = lines or [""]
     text = "\n".join(lines)
     if random.integers(5) == 0:
         text = text.replace(",", [";", "\t", " ", ", ,", "\r\n"][random.integers(5)])
