@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.errors import InputError, MissingLibraryError
+from partialslip.inputfile import LARGEST_MESH, read_bytes
 from partialslip_meshes import deck
 from partialslip_meshes.files import check_files, quiet
 from partialslip_meshes.mesh import Mesh
@@ -111,6 +112,11 @@ def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
     texts = check_files(path, f"{name} = {path!r}")
     if suffix == ".inp" and (wrong := deck.fault(texts, BOUNDARY_NAMES)):
         refuse(wrong)
+    if suffix == ".msh":
+        text = read_bytes(path, LARGEST_MESH)
+        for section in (b"$Nodes", b"$Elements"):
+            if (count := text.count(b"\n" + section)) > 1:  # meshio keeps the last one
+                refuse(f"must have one section {section.decode()}, not {count}")
     printed, damaged = "", "the file is damaged or of another format"
     try:
         # meshio prints what is wrong and exits

@@ -77,8 +77,11 @@ def test_a_lock_that_is_held_says_by_whom_if_it_can(tmp_path, left, who):
             pass
 
 
-def test_a_terminal_that_closes_ends_workers_with_one_line(tmp_path):
-    """The signal goes to all processes of the terminal, also to Python's process that tracks what they leave."""
+@pytest.mark.parametrize(("number", "line"), [(signal.SIGHUP, "the terminal has gone"), (signal.SIGTERM, "terminated"),
+                                               (signal.SIGINT, "interrupted")])  # fmt: skip
+def test_a_signal_to_all_processes_ends_workers_with_one_line(tmp_path, number, line):
+    """A terminal that closes, a batch system and Ctrl-C signal all processes, also Python's process that tracks
+    what they leave."""
     (tmp_path / "hang_up.py").write_text(HANG_UP)
     with subprocess.Popen(
         [sys.executable, "hang_up.py"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -86,7 +89,7 @@ def test_a_terminal_that_closes_ends_workers_with_one_line(tmp_path):
     ) as process:  # fmt: skip
         assert process.stdout.readline() == "True\n"
         time.sleep(0.2)
-        os.killpg(process.pid, signal.SIGHUP)
+        os.killpg(process.pid, number)
         _, said = process.communicate(timeout=60)
-    assert said == "partialslip: the terminal has gone\n"
-    assert process.returncode == 128 + signal.SIGHUP
+    assert said == f"partialslip: {line}\n"
+    assert process.returncode == 128 + number

@@ -101,6 +101,14 @@ def test_nodes_of_an_included_file_count(text, tmp_path):
     assert "one block *NODE" in line_of(read, FIELD, at(tmp_path, f"*INCLUDE, INPUT=more.inp\n{text}"))
 
 
+def test_two_meshes_in_one_file_of_gmsh_are_refused(mesh, tmp_path):
+    points = np.column_stack([mesh.points, 0 * mesh.points[:, 0]])
+    meshio.write(tmp_path / "body.msh", meshio.Mesh(points, [("triangle", mesh.triangles)]), file_format="gmsh22")
+    text = (tmp_path / "body.msh").read_bytes()
+    (tmp_path / "body.msh").write_bytes(text + b"\n" + text)
+    assert "must have one section $Nodes, not 2" in line_of(read, FIELD, str(tmp_path / "body.msh"))
+
+
 @pytest.mark.fault
 def test_a_second_part_that_is_not_seen(mesh, text, tmp_path, monkeypatch):
     """Without the check the nodes of the second part replace those of the first: the body is 5 % higher."""
