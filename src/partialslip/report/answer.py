@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,8 @@ from partialslip.judge.reference import reference
 from partialslip.result import RATCHETS, Result
 from partialslip.result.peak import peak_error, pressure_peaks
 from partialslip.run import Run
-from partialslip.units import PREFIXES, SI, Dimension, Units
+from partialslip.scene import Tabulated
+from partialslip.units import LENGTHS, PREFIXES, SI, Dimension, Units
 
 _DIGITS = 7  # display: significant
 
@@ -102,7 +104,7 @@ def answers(run: Run) -> list[tuple[str, str]]:
     the spacing of a given profile make has lines of its own.
     """
     result = run.results[run.answering]
-    own = [*_stick(run, result), *_noise(run), *_spacing(run), *_contact(run, result)]
+    own = [*_stick(run, result), *_points(run), *_noise(run), *_spacing(run), *_contact(run, result)]
     return [*own, *_shears(run), *_stresses(run), *_plates(run), *_right_grip(run)]
 
 
@@ -131,6 +133,15 @@ def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
     else:
         ends = [with_error(end, error, exponent) for end, error in zip(result.permanent, errors, strict=True)]
         yield "never slips", f"[{ends[0]}, {ends[1]}] {label}"
+
+
+def _points(run: Run) -> Iterator[tuple[str, str]]:
+    """Yield the number of points of a measured profile, and the units in which they were read."""
+    if not isinstance(run.scene.profile, Tabulated) or (known := run.scene.profile.measured) is None:
+        return
+    names = {factor: name for name, factor in reversed(LENGTHS.items())}
+    x, gap = (names.get(float(f"{unit:.12g}"), f"{unit:g} m") for unit in known.unit)
+    yield "points of the profile", f"{known.points} of {Path(known.file).name}, x in {x}, gap in {gap}"
 
 
 def _noise(run: Run) -> Iterator[tuple[str, str]]:
