@@ -18,6 +18,7 @@ from partialslip.friction.load_path import Path, stretched
 from partialslip.friction.normal import Presses
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.steps import follow_or_step
+from partialslip.friction.work import told_by_finer
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import NEAREST, VERTICES, within
 from partialslip.result import Clock
@@ -243,6 +244,7 @@ def _contact_forces(
             other = step_errors.other_steps(path), pressed, replace(along, trail=None), near, pivot
             finer, *_ = coulomb_coupled.march(*loaded, *other)
             left, moves = _path_errors(problem, line, history, finer), step_errors.of_plates(history, finer)
+            history = told_by_finer(history, finer)
         choosing = time.process_time() - began
         return _ContactForces(
             pressing, most, history.of(nodes), nodes, first, left, None, trail, moves, choosing_s=choosing

@@ -14,8 +14,9 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions
-from partialslip.halfplane.loading import Loading, Worn, loading
+from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.slip import Worn
 from partialslip.result import StickZone
 
 _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a slip zone inside is not taken
@@ -128,8 +129,7 @@ class Turning:
     @cached_property
     def worn(self) -> Worn:
         """Slip over half a cycle, and the energy that a cycle dissipates."""
-        x, slip, dissipated = slips(self.way)
-        return Worn(self.mirror * x[:: self.mirror], self.turn * slip[:: self.mirror], dissipated)
+        return slips(self.way).turned(self.mirror, self.turn)
 
 
 @dataclass(frozen=True, eq=False)
