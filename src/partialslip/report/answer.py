@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.judge.reference import reference
-from partialslip.result import Result
+from partialslip.result import Result, Slip
 from partialslip.result.peak import peak_error
 from partialslip.run import Run
 from partialslip.units import PREFIXES, SI, Dimension, Units
@@ -24,7 +24,6 @@ _OTHERS: Mapping[str, tuple[Dimension, _Value]] = {
     "p, largest": ("Pa", lambda found: found.traction.p_max),
     "q = (q2 - q1)/2, largest": ("Pa", lambda found: float(np.abs(found.traction.dq).max()) / 2),
     "slip, largest each way": ("m", lambda found: float(np.abs(found.slip.slip).max()) if found.slip else None),
-    "dissipated in a cycle": ("J/m", lambda found: found.slip.dissipated if found.slip else None),
 }
 
 
@@ -43,6 +42,10 @@ def amounts(results: Mapping[str, Result], units: Units = SI) -> tuple[list[str]
         largest = max((abs(each) for each in values if each is not None and math.isfinite(each)), default=0.0)
         if largest:
             rows.append(_row(quantity, scale(largest, of, units), values))
+    if worn := [result.slip.dissipated for result in found if result.slip and result.slip.dissipated]:
+        exponent, label = scale(max(worn), "J/m", units)
+        works = [dissipated(result.slip, exponent) if result.slip else "none" for result in found]
+        rows.append(["dissipated in a cycle", label, *works])
     return ["quantity", "unit", *results], rows
 
 
@@ -273,6 +276,13 @@ def estimate_of(result: Result, key: str) -> float:
     instead = {"q1": "q", "q2": "q"} | ({"m": "a", "n": "a"} if result.regime == "stuck" else {})
     unknown = 0.0 if result.method in _EXACT else math.nan
     return float(result.estimate.get(key, result.estimate.get(instead.get(key, key), unknown)))
+
+
+def dissipated(slip: Slip, exponent: int = 0) -> str:
+    """Return the work of friction in a cycle in units of ten to the ``exponent``, with its error, as text."""
+    off = slip.dissipated_error
+    told = with_error(slip.dissipated, math.nan if off is None else off, exponent)
+    return told if off is not None else f"{told} (error not estimated)"
 
 
 def _unit(run: Run, size: float, of: Dimension) -> tuple[int, str]:

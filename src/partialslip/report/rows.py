@@ -9,7 +9,7 @@ import numpy as np
 from partialslip.groups import grouped
 from partialslip.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
 from partialslip.plan import Plan
-from partialslip.report.answer import HALF_PLANES
+from partialslip.report.answer import HALF_PLANES, dissipated, scale
 from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.scene import Scene
@@ -309,7 +309,8 @@ def slip_text(result: Result, units: Units = SI) -> str:
     if result.slip is None:
         return ""
     largest = units.text(float(np.abs(result.slip.slip).max()), "m", 5)
-    return f"up to {largest} each way, {units.text(result.slip.dissipated, 'J/m', 5)} dissipated a cycle"
+    exponent, label = scale(result.slip.dissipated, "J/m", units)
+    return f"up to {largest} each way, {dissipated(result.slip, exponent)} {label} dissipated a cycle"
 
 
 def setting(choice: object) -> str:
