@@ -18,8 +18,8 @@ from partialslip.friction.load_path import Path, stretched
 from partialslip.friction.normal import Presses
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.steps import follow_or_step
-from partialslip.friction.work import told_by_finer
 from partialslip.friction.warm_start import Trail
+from partialslip.friction.work import told_by_finer
 from partialslip.friction.zone_ends import NEAREST, VERTICES, within
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies

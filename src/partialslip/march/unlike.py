@@ -117,12 +117,11 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
         while level.history and level.stick:
             began = self.clock.cost().cpu_s
             level, self.followed = _path_errors(self, level)
-            self.path = level.history and replace(level.history.path, before=None)
-            others = _step_errors(level)
-            if not self.path or not (more := more_steps(self.path, self.followed, others, self.scene.fem.accuracy)):
-                break
+            assert level.history
+            self.path = path = replace(level.history.path, before=None)
+            more = more_steps(path, self.followed, _step_errors(level), self.scene.fem.accuracy)
             spent = self.clock.cost().cpu_s - began
-            if spent * more.substeps / self.path.substeps > driver.SHARE * self.clock.remaining():
+            if not more or spent * more.substeps / path.substeps > driver.SHARE * self.clock.remaining():
                 break
             self.path = more
             level = _solve_on(self, more, level.vertices, max(level.a), self.clock)
