@@ -10,6 +10,7 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip.errors import InputError
 from partialslip.friction.coulomb_coupled import HALF
+from partialslip.friction.history import History
 from partialslip.friction.step_errors import more_steps, steps_matter
 from partialslip.friction.zone_ends import apart
 from partialslip.result import Clock
@@ -140,6 +141,7 @@ class _Refinement:
         self.path_errors: Mapping[str, float] = {}  # of the steps of coupled bodies
         self.path_moves = self.solution.path_moves
         self.plates_error: float | None = None  # None until it is estimated
+        self.other: History | None = None  # by elements of the neighbouring order, on the present mesh
         self.waited = self.cuts = 0
 
     @property
@@ -174,7 +176,11 @@ class _Refinement:
 
     def check_steps(self) -> None:
         """Check the load steps on the present mesh and estimate their errors anew, where steps matter: the mesh on
-        which they were chosen saw less of a stick zone that moves while the loads change."""
+        which they were chosen saw less of a stick zone that moves while the loads change. Those of coupled bodies may
+        be too few as soon as the errors of pressing have fallen below theirs."""
+        if self.solution.coupled:
+            self._refine_steps()
+            return
         if not steps_matter(self.step_errors or {}, self.problem.accuracy) or not self._allows_marches(1):
             return
         fine = self._solved_again()
@@ -188,7 +194,7 @@ class _Refinement:
         if self.best and error >= worst(self.best.errors):
             return
         settled = max(self.problem.accuracy, error / goals.BAR) if self.expense.limited else None
-        self.best = Adapted(self.solution, self.errors, 0, 0, 0, self.width, settled, self.plates_error)
+        self.best = Adapted(self.solution, self.errors, 0, 0, 0, self.width, settled, self.plates_error, self.other)
 
     def best_of_all(self) -> Adapted:
         """The best solution, with the work on all meshes."""
@@ -385,10 +391,12 @@ class _Refinement:
 
     def _keep_steps(self) -> None:
         """Keep the load steps of the present solution for all meshes to come, and their errors."""
-        solution, problem = self.solution, self.problem
-        if solution.enclosed and solution.history and not solution.coupled:
+        solution = self.solution
+        if not solution.history or not (solution.coupled or solution.enclosed):
+            return
+        self.problem = replace(self.problem, path=replace(solution.history.path, before=None))
+        if not solution.coupled:
             self.step_errors = solution.step_errors
-            self.problem = replace(problem, path=replace(solution.history.path, before=None))
             self.goal = Goal.at(max(self.goal.accuracy, worst(self.step_errors)), self.problem)
 
     def _refine_steps(self) -> None:
@@ -400,6 +408,8 @@ class _Refinement:
                 return
             self.problem = replace(self.problem, path=more)
             self.solution = self._solved_again()
+            self.path_errors, self.path_moves = self.solution.path_errors, self.solution.path_moves
+            self._keep_steps()
             self.iterations += before.iterations
             self.expense.march(self.solution, self.march_s)
 
@@ -437,6 +447,7 @@ class _Refinement:
         smooth = estimate.smooth_errors(self.solution, other, self.eased, self.problem.breaks, corner)
         self.errors = estimate.combined(self.solution, smooth, self.end_errors)
         self.plates_error = compliance_error(self.problem, self.solution, other, self.errors["a"])
+        self.other = other.history
         return smooth
 
     def _affordable_goal(self) -> Goal | None:

@@ -303,6 +303,8 @@ class Adapted:
         Accuracy that the allowance of CPU seconds sufficed for; None without an allowance.
     plates_error : float or None
         Estimated error of the compliance of the plates, relative.
+    other : History or None
+        Of elements of the neighbouring order on the same mesh; None if there is none.
     """
 
     solution: MeshSolution
@@ -313,3 +315,4 @@ class Adapted:
     width: float
     settled: float | None = None
     plates_error: float | None = None
+    other: History | None = None

@@ -1,15 +1,17 @@
 """The result of the last mesh, in SI units: tractions, zones, certificate, estimates, counts, notes."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.friction.history import certificate, last_cycle_change
+from partialslip.friction.history import History, certificate, last_cycle_change
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import doubts, steady_state, steps_of_coupled
 from partialslip.friction.restart import begun, end_state
 from partialslip.friction.step_errors import summed
+from partialslip.friction.work import work, work_error
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.plates import Plates
@@ -87,7 +89,7 @@ def to_result(
     )
     return replace(
         Result.of("fem", found, solution.half_width * L, p0 * stress, traction, clock),
-        slip=Slip(x * L + origin, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
+        slip=_slip(history, adapted.other, estimate, x * L + origin, unit, scene.P) if history else None,
         settings={
             "bodies": _bodies(solution, problem),
             "elements": f"P{problem.order}",
@@ -118,6 +120,14 @@ def to_result(
         plates=plates,
         right_grip=_right_grip(problem, solution, scene.P),
     )
+
+
+def _slip(
+    history: History, other: History | None, errors: Mapping[str, float], x: Array, unit: float, P: float
+) -> Slip:
+    """Slip at ``x`` and work of friction; ``unit`` (m) is that of displacements."""
+    off = work_error(history, other, errors)
+    return Slip(x, history.slip * unit, work(history) * unit * P, None if off is None else off * unit * P)
 
 
 def _right_grip(problem: ScaledProblem, solution: MeshSolution, P: float) -> Array | None:

@@ -19,6 +19,7 @@ from partialslip.friction.normal import Presses
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
+from partialslip.friction.work import told_by_finer
 from partialslip.friction.zone_ends import NEAREST, VERTICES, within
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies
@@ -243,6 +244,7 @@ def _contact_forces(
             other = step_errors.other_steps(path), pressed, replace(along, trail=None), near, pivot
             finer, *_ = coulomb_coupled.march(*loaded, *other)
             left, moves = _path_errors(problem, line, history, finer), step_errors.of_plates(history, finer)
+            history = told_by_finer(history, finer)
         choosing = time.process_time() - began
         return _ContactForces(
             pressing, most, history.of(nodes), nodes, first, left, None, trail, moves, choosing_s=choosing

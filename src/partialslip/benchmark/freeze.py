@@ -134,18 +134,15 @@ def _solved(problem: Problem, way: Derivation) -> Result:
 
 
 def _slip(problem: Problem, a: float) -> dict[str, Quantity]:
-    """Slip and dissipated energy of finite elements, extrapolated from runs with more and more load steps."""
+    """Slip and dissipated energy of finite elements: slip extrapolated from runs with more and more load steps."""
     found = []
     for steps in _STEPS:
         changes = {"fem.size": 0.01, "fem.order": 2, "load.steps": steps}
         found.append(quantities(problem.scene, _solved(problem, Derivation("fem", "", changes)), problem.places, a))
-    result = {}
-    for key in ("slip", "dissipated"):
-        first, second, last = (each[key].value for each in found)
-        ratio = (first - second) / (second - last)
-        value = last - (second - last) / (ratio - 1) if ratio > 1 else last
-        result[key] = found[-1][key]._replace(value=value)
-    return result
+    first, second, last = (each["slip"].value for each in found)
+    ratio = (first - second) / (second - last)
+    value = last - (second - last) / (ratio - 1) if ratio > 1 else last
+    return {"slip": found[-1]["slip"]._replace(value=value), "dissipated": found[-1]["dissipated"]}
 
 
 def _of_exact(checked: float, turns: bool) -> float:

@@ -76,7 +76,7 @@ def steady_state(
     few = not history.path.followed and history.path.most_steps < _FEW_STEPS
     if anew and few and history.dissipated > _WORK * history.bound.sum():
         steps = "a step" if history.path.most_steps == 1 else f"{history.path.most_steps} steps"
-        notes += (f"slip and dissipated energy are rough: {steps} from load point to load point (load.steps)",)
+        notes += (f"slip near the ends of the contact is rough: {steps} from load point to load point (load.steps)",)
     if apart:
         return SteadyState(regime, notes=notes, slips=slips)
     permanent = permanent_zone(x, history, stick) if x is not None and history.turns and regime != "ratchets" else None

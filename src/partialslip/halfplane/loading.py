@@ -4,7 +4,6 @@ a first loading under twice the bound. Scaled: lengths by a, tractions by f p0, 
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.mean_bound import mean_load_bound
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.slip import dissipation, slip
+from partialslip.halfplane.slip import Worn, dissipation, slip
 from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, UNEVEN_FRICTION, drive, steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
@@ -23,15 +22,6 @@ _NOTHING = StickZone(0.0, 1.0, 1)
 _STAGES = 16  # accuracy: of the way from load point to load point
 _SHARES = np.arange(9) / 8  # of slip zones
 _ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
-
-
-class Worn(NamedTuple):
-    """Slip over half a cycle: points ``x`` (k,), net ``slip`` there (k,), and the energy that a whole cycle dissipates,
-    ``dissipated``; scaled."""
-
-    x: Array
-    slip: Array
-    dissipated: float
 
 
 @dataclass(frozen=True)
@@ -161,8 +151,7 @@ class Loading:
     @property
     def worn(self) -> Worn:
         """Slip over half a cycle, and the energy that a cycle dissipates."""
-        x, slips, dissipated = dissipation(self.zone, self.seen, self.gf)
-        return Worn(self.mirror * x[:: self.mirror], self.turn * slips[:: self.mirror], dissipated)
+        return dissipation(self.zone, self.seen, self.gf).turned(self.mirror, self.turn)
 
     @cached_property
     def turns_round(self) -> bool:

@@ -226,12 +226,14 @@ def _limits(scene: Scene, pressed: Contact, cycle: Loading | Turning | None) -> 
 
 
 def _slip(scene: Scene, pressed: Contact, cycle: Loading | Turning) -> Slip:
-    x, slips, dissipated = cycle.worn
-    stress, unit = pressed.f * pressed.p0, scene.material.A * pressed.f * pressed.p0 * pressed.a
+    worn, stress = cycle.worn, pressed.f * pressed.p0
+    unit = scene.material.A * stress * pressed.a
+    energy = unit * stress * pressed.a
     return Slip(
-        pressed.centre + pressed.a * x,
-        unit * slips,
-        dissipated * unit * stress * pressed.a,
+        pressed.centre + pressed.a * worn.x,
+        unit * worn.slip,
+        energy * worn.dissipated,
+        energy * worn.error if cycle.holds else None,
     )
 
 

@@ -15,8 +15,9 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions
-from partialslip.halfplane.loading import Loading, Worn, loading
+from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.slip import Worn
 from partialslip.halfplane.steady import UNEVEN_FRICTION
 from partialslip.result import StickZone
 
@@ -130,8 +131,7 @@ class Turning:
     @cached_property
     def worn(self) -> Worn:
         """Slip over half a cycle, and the energy that a cycle dissipates."""
-        x, slip, dissipated = slips(self.way)
-        return Worn(self.mirror * x[:: self.mirror], self.turn * slip[:: self.mirror], dissipated)
+        return slips(self.way).turned(self.mirror, self.turn)
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,13 +19,14 @@ from partialslip.friction.load_path import Path
 from partialslip.friction.regime import doubts
 from partialslip.friction.restart import begun, end_state
 from partialslip.friction.step_errors import Errors
+from partialslip.friction.work import work, work_error
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march.cells import off_cells, on_cells
 from partialslip.result import Clock, Result, Slip, SteadyState, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
-_SHARE = 1 / 3  # cost: largest part of the remaining CPU seconds for one mesh
+SHARE = 1 / 3  # cost: largest part of the remaining CPU seconds for one mesh
 
 
 @dataclass(frozen=True)
@@ -163,6 +164,7 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
     """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the rest of
     the allowance of its clock does not suffice. Returns the result, and the last level."""
     level: L | None = None
+    before: L | None = None
     clock, errors = problem.clock, Errors()
     shares: dict[str, Errors] = {}
     meshes, iterations, spent = 0, 0, 0.0
@@ -171,7 +173,7 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
         mesh = _mesh_at(problem.meshes, place)
         if level:
             likely = problem.likely(level, len(problem.cells(level, mesh)), spent)
-            if likely == math.inf or (meshes > problem.coarse and likely > _SHARE * clock.remaining()):
+            if likely == math.inf or (meshes > problem.coarse and likely > SHARE * clock.remaining()):
                 break
         began = clock.cost().cpu_s
         before, level = level, problem.solve(level, mesh)
@@ -198,7 +200,8 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
         shares["start"] = lost
         errors = {key: error + lost.get(key, 0.0) for key, error in errors.items()}
     counts = {"meshes": meshes, "iterations": iterations}
-    return _result(problem, level, errors, shares, counts, notes), level
+    other = before.history if before and errors else None
+    return _result(problem, level, other, errors, shares, counts, notes), level
 
 
 def _mesh_at(meshes: Sequence[tuple[float, float]], place: float) -> tuple[float, float]:
@@ -210,6 +213,7 @@ def _mesh_at(meshes: Sequence[tuple[float, float]], place: float) -> tuple[float
 def _result(
     problem: CellProblem[L],
     level: L,
+    other: History | None,
     errors: Errors,
     shares: Mapping[str, Errors],
     counts: Mapping[str, int],
@@ -226,7 +230,13 @@ def _result(
         places = problem.places(level)
         p, q = (off_cells(scene.P * forces, places) for forces in (answer.pressed, history.end[0]))
         state = end_state(scene, p, q, errors, history, np.diff(level.vertices))
-        slip = Slip(traction.x, history.slip[answer.cells] * unit, history.dissipated * unit * scene.P)
+        off, energy = work_error(history, other, errors), unit * scene.P
+        slip = Slip(
+            traction.x,
+            history.slip[answer.cells] * unit,
+            work(history) * energy,
+            None if off is None else off * energy,
+        )
     return replace(
         Result.of("march", found, answer.a, answer.p0, traction, problem.clock),
         state=state,

@@ -21,7 +21,8 @@ from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.normal import press
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import steady_state, steps_of_coupled
-from partialslip.friction.step_errors import Errors, along_path, other_steps, pressed_together, summed
+from partialslip.friction.step_errors import Errors, along_path, more_steps, other_steps, pressed_together, summed
+from partialslip.friction.work import told_by_finer
 from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, read_stick_zone, within
 from partialslip.halfplane.tractions import CoupledTractions
 from partialslip.march import driver
@@ -88,11 +89,10 @@ class UnlikeLevel(driver.Level):
 class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
     """Half-planes of unlike materials, for :func:`partialslip.march.driver.march`: ``beta``, zero without coupling, and
     the flat ``punch`` as which the contact grows under an even ``gap``, if it is one. ``followed`` are the errors of
-    the load steps, on the first cells that are not coarse. Twice as many steps would cost twice as much on these and
-    all finer cells: they stay as asked for."""
+    the load steps, on the first cells that are not coarse. There as many steps are taken as these errors call for."""
 
     telling = ("a",)
-    steps_count = False  # they are as asked for
+    steps_count = False  # they are as many as their errors call for
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock) -> None:
         super().__init__(scene, start, clock, load_path(scene, plan, start), (scene.origin, scene.length), _MESHES)
@@ -107,6 +107,28 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
         self.followed: Errors = {}
 
     def solve(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
+        found = self._enclosed(level, mesh)
+        if level and not self.followed and self.path and self.path.moves and self.beta:
+            return self._in_enough_steps(found)
+        return found
+
+    def _in_enough_steps(self, level: UnlikeLevel) -> UnlikeLevel:
+        """The ``level`` in as many load steps as their errors call for, which all finer cells take, too."""
+        while level.history and level.stick:
+            began = self.clock.cost().cpu_s
+            level, self.followed = _path_errors(self, level)
+            assert level.history
+            self.path = path = replace(level.history.path, before=None)
+            more = more_steps(path, self.followed, _step_errors(level), self.scene.fem.accuracy)
+            spent = self.clock.cost().cpu_s - began
+            if not more or spent * more.substeps / path.substeps > driver.SHARE * self.clock.remaining():
+                break
+            self.path = more
+            level = _solve_on(self, more, level.vertices, max(level.a), self.clock)
+        return level
+
+    def _enclosed(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
+        """The solution on cells that enclose the contact."""
         wider = 1.0
         while True:
             near = max(level.a) if level else None
@@ -117,8 +139,6 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
             wider *= _WIDER
 
     def mesh_errors(self, level: UnlikeLevel, before: UnlikeLevel) -> Errors:
-        if not self.followed and self.path and self.path.moves and self.beta:
-            self.followed = _path_errors(self, self.path, level, self.clock)
         return _mesh_errors(level, before, self)
 
     def step_errors(self, level: UnlikeLevel) -> Errors:
@@ -309,17 +329,18 @@ def _step_errors(level: UnlikeLevel) -> Errors:
     return pressed_together(level.history, level.pressed, np.diff(level.vertices), np.arange(len(level.x)))
 
 
-def _path_errors(problem: UnlikeBodies, path: Path, level: UnlikeLevel, clock: Clock) -> Errors:
-    """Errors of the load steps, on the cells of the ``level``."""
-    if not level.history or not level.stick:
-        return {}
-    finer = _solve_on(problem, other_steps(path), level.vertices, max(level.a), clock)
-    if not finer.history or not finer.stick:
-        return {}
+def _path_errors(problem: UnlikeBodies, level: UnlikeLevel) -> tuple[UnlikeLevel, Errors]:
+    """The ``level`` with the work that its load steps miss, and their errors on its cells; empty if not known."""
+    assert level.history
+    path = replace(level.history.path, before=None)
+    finer = _solve_on(problem, other_steps(path), level.vertices, max(level.a), problem.clock)
+    if not finer.history or not finer.stick or not level.stick:
+        return level, {}
     places = {id(level.history): level.ends, id(finer.history): finer.ends}
 
     def ends(history: History) -> tuple[float, ...]:
         return (*places[id(history)][0], *places[id(history)][1])
 
     zones, widths = (level.stick, finer.stick), np.diff(level.vertices)
-    return along_path(level.history, finer.history, zones, ends, widths, level.a[problem.scene.largest - 1])
+    off = along_path(level.history, finer.history, zones, ends, widths, level.a[problem.scene.largest - 1])
+    return replace(level, history=told_by_finer(level.history, finer.history)), off

@@ -9,7 +9,7 @@ import numpy as np
 
 from partialslip.judge.known import error_of
 from partialslip.judge.reference import reference
-from partialslip.result import RATCHETS, Result
+from partialslip.result import RATCHETS, Result, Slip
 from partialslip.result.peak import peak_error, pressure_peaks
 from partialslip.run import Run
 from partialslip.scene import Tabulated
@@ -23,7 +23,6 @@ _OTHERS: Mapping[str, tuple[Dimension, _Value]] = {
     "p_max, largest p": ("Pa", lambda found: found.traction.p_max),
     "q = (q2 - q1)/2, largest": ("Pa", lambda found: float(np.abs(found.traction.dq).max()) / 2),
     "slip, largest each way": ("m", lambda found: float(np.abs(found.slip.slip).max()) if found.slip else None),
-    "dissipated in a cycle": ("J/m", lambda found: found.slip.dissipated if found.slip else None),
 }
 
 
@@ -44,6 +43,10 @@ def amounts(results: Mapping[str, Result], units: Units = SI) -> tuple[list[str]
         largest = max((abs(each) for each in values if each is not None and math.isfinite(each)), default=0.0)
         if largest:
             rows.append(_row(quantity, scale(largest, of, units), values))
+    if worn := [result.slip.dissipated for result in found if result.slip and result.slip.dissipated]:
+        exponent, label = scale(max(worn), "J/m", units)
+        works = [dissipated(result.slip, exponent) if result.slip else "none" for result in found]
+        rows.append(["dissipated in a cycle", label, *works])
     return ["quantity", "unit", *results], rows
 
 
@@ -302,6 +305,13 @@ def _error_of(result: Result, key: str) -> float:
 def _mark(*errors: float) -> str:
     """Return that there is no estimate, if one of the ``errors`` is NaN."""
     return "" if all(map(math.isfinite, errors)) else NOT_ESTIMATED
+
+
+def dissipated(slip: Slip, exponent: int = 0, label: str = "") -> str:
+    """Return the work of friction in a cycle in units of ten to the ``exponent``, with its error and the unit's
+    ``label``, as text."""
+    error = math.nan if slip.dissipated_error is None else slip.dissipated_error
+    return f"{with_error(slip.dissipated, error, exponent)} {label}".rstrip() + _mark(error)
 
 
 def _unit(run: Run, size: float, of: Dimension) -> tuple[int, str]:

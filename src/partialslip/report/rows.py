@@ -10,7 +10,7 @@ from partialslip.groups import grouped
 from partialslip.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
 from partialslip.judge.known import error_of
 from partialslip.plan import Plan
-from partialslip.report.answer import HALF_PLANES, NOT_ESTIMATED, with_error
+from partialslip.report.answer import HALF_PLANES, NOT_ESTIMATED, dissipated, scale, with_error
 from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.scene import Scene
@@ -315,7 +315,9 @@ def slip_text(result: Result, units: Units = SI) -> str:
     if result.slip is None:
         return ""
     largest = units.text(float(np.abs(result.slip.slip).max()), "m", 5)
-    return f"up to {largest} each way, {units.text(result.slip.dissipated, 'J/m', 5)} dissipated a cycle"
+    exponent, label = scale(result.slip.dissipated, "J/m", units)
+    words = f"{label} dissipated a cycle"
+    return f"up to {largest} each way, {dissipated(result.slip, exponent, words)}"
 
 
 def setting(choice: object) -> str:
