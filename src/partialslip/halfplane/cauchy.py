@@ -111,8 +111,8 @@ class Cauchy:
             far[point, panel] = np.inf
             result[part] = np.reciprocal(far, out=far).reshape(len(part), v.size) @ of_nodes
             np.add.at(result, part[point], self._near(z[part[point]], v_z, panel)[:count].T)
-        integrals: Complex = result.T / np.pi
-        return integrals
+        result /= np.pi
+        return result.T
 
     def _near(self, z: Complex, v_z: Complex, panel: npt.NDArray[np.int64]) -> Complex:
         """Integrals and derivatives over near panels, one per pair of point and panel, (2 k, pairs).
