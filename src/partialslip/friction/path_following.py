@@ -386,7 +386,7 @@ class _Leg:
         while True:
             tolerance = self._tolerance()
             room = self._room()
-            worst = int(np.argmin(room / tolerance))
+            worst = int(np.argmin(np.divide(room, tolerance, out=np.zeros_like(room), where=room != 0)))
             if room[worst] >= -tolerance[worst]:
                 return
             self._drive(worst)

@@ -281,6 +281,8 @@ def estimate_of(result: Result, key: str) -> float:
 def dissipated(slip: Slip, exponent: int = 0) -> str:
     """Return the work of friction in a cycle in units of ten to the ``exponent``, with its error, as text."""
     off = slip.dissipated_error
+    if off is not None and off > slip.dissipated:
+        return f"at most {(slip.dissipated + off) / 10.0**exponent:.1g}"
     told = with_error(slip.dissipated, math.nan if off is None else off, exponent)
     return told if off is not None else f"{told} (error not estimated)"
 
