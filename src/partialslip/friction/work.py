@@ -11,6 +11,8 @@ from dataclasses import replace
 from partialslip.friction.history import History
 from partialslip.friction.load_path import Missed, Path
 
+_ROUNDING = 1e-14  # accuracy: work in f P times a displacement of A P: of rounding, where nothing slips
+
 
 def last_cycle(history: History) -> Path:
     """The last cycle of ``history``, followed event by event from the state in which it began."""
@@ -57,4 +59,5 @@ def work_error(history: History, other: History | None, errors: Mapping[str, flo
         return None
     alike = work if other.path.missed else lambda each: each.dissipated  # a mesh before may know less of its steps
     by_mesh = abs(alike(history) - alike(other))
-    return max(by_mesh, errors["q"] * (history.dissipated + abs(missed.work))) + missed.error
+    known = max(by_mesh, errors["q"] * (history.dissipated + abs(missed.work))) + missed.error
+    return known + _ROUNDING * float(history.bound.sum())

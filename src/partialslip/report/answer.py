@@ -311,6 +311,8 @@ def dissipated(slip: Slip, exponent: int = 0, label: str = "") -> str:
     """Return the work of friction in a cycle in units of ten to the ``exponent``, with its error and the unit's
     ``label``, as text."""
     error = math.nan if slip.dissipated_error is None else slip.dissipated_error
+    if error > slip.dissipated:
+        return f"at most {(slip.dissipated + error) / 10.0**exponent:.1g} {label}".rstrip()
     return f"{with_error(slip.dissipated, error, exponent)} {label}".rstrip() + _mark(error)
 
 
