@@ -72,8 +72,6 @@ class MeshSolution:
         Points where q has a kink at single load points, but neither q1 nor q2 has.
     trail : Trail or None
         Which nodes of coupled bodies touch and slip in each step.
-    choosing_s : float
-        CPU seconds spent on the choice of load steps and on their errors: finer meshes take the same steps.
     fits : (e,) array
         Distances between the ends of the contact that many and few vertices of the mesh tell, of the 2 ends at load
         point 2 and the ``ends_at_1``: errors of the fit.
@@ -102,7 +100,6 @@ class MeshSolution:
     path_moves: Array = field(default_factory=lambda: np.zeros((2, 2)))
     dissimilar: bool = False
     relative: Relative | None = None
-    choosing_s: float = 0.0
     fits: Array = field(default_factory=lambda: np.zeros(2))
 
     @property

@@ -22,11 +22,11 @@ from partialslip.friction.step_errors import Errors
 from partialslip.friction.work import work, work_error
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march.cells import off_cells, on_cells
-from partialslip.result import Clock, Result, Slip, SteadyState, Traction
+from partialslip.result import Clock, Pace, Result, Slip, SteadyState, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
-SHARE = 1 / 3  # cost: largest part of the remaining CPU seconds for one mesh
+_LEFT = 3.0  # cost: times the seconds of the next mesh that must be left: finite elements follow in the same run
 
 
 @dataclass(frozen=True)
@@ -137,10 +137,9 @@ class CellProblem(ABC, Generic[L]):
     def step_errors(self, level: L) -> Errors:
         """Errors due to the load steps."""
 
-    def likely(self, level: L, count: int, spent: float) -> float:
-        """CPU seconds that a mesh with ``count`` ends of cells is likely to take, as the mesh of the ``level`` took
-        ``spent`` ones; infinite: there is to be none."""
-        return float(spent * (count / len(level.vertices)) ** 3)
+    def too_large(self, level: L, count: int) -> bool:  # noqa: ARG002
+        """Whether a mesh with ``count`` ends of cells after that of the ``level`` is out of proportion."""
+        return False
 
     def excess(self, meshed: Errors, stepped: Errors) -> Errors:
         """Errors ``meshed`` over what is allowed: at most 1 if finer cells are not needed, or of no use: they do not
@@ -161,23 +160,24 @@ class CellProblem(ABC, Generic[L]):
 
 
 def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Result, L]:
-    """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the rest of
-    the allowance of its clock does not suffice. Returns the result, and the last level."""
+    """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the next
+    mesh does not fit the allowance of its clock; errors are estimated in any case. Returns the result, and the last
+    level."""
     level: L | None = None
     before: L | None = None
     clock, errors = problem.clock, Errors()
     shares: dict[str, Errors] = {}
-    meshes, iterations, spent = 0, 0, 0.0
+    meshes, iterations, pace = 0, 0, Pace(clock)
     place, last = 0.0, len(problem.meshes) - 1
     while True:
         mesh = _mesh_at(problem.meshes, place)
-        if level:
-            likely = problem.likely(level, len(problem.cells(level, mesh)), spent)
-            if likely == math.inf or (meshes > problem.coarse and likely > SHARE * clock.remaining()):
-                break
-        began = clock.cost().cpu_s
+        if level and problem.too_large(level, len(problem.cells(level, mesh))):
+            break
+        if errors and not pace.fits(_LEFT):
+            break
         before, level = level, problem.solve(level, mesh)
-        spent, meshes = clock.cost().cpu_s - began, meshes + 1
+        meshes += 1
+        pace.took()
         iterations += level.history.iterations if level.history else 0
         halfway = False
         if before and meshes > problem.coarse:

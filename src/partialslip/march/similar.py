@@ -4,7 +4,6 @@ Shear is constant on cells, refined towards the ends of the contact and of the c
 """
 
 import itertools
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -132,14 +131,12 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
     def cells(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> Array:
         return _cells(self._ends, self._inner, self._friction, level, *mesh)
 
-    def likely(self, level: SimilarLevel, count: int, spent: float) -> float:
+    def too_large(self, level: SimilarLevel, count: int) -> bool:
         history = level.history
         if not history:
-            return math.inf
+            return True
         one = _LEG if history.path.followed and history.path.presses_anew else 1.0
-        if one * history.load_steps * count**3 > _WORK:
-            return math.inf
-        return super().likely(level, count, spent)
+        return one * history.load_steps * count**3 > _WORK
 
     def solve(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> SimilarLevel:
         # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a

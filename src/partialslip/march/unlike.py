@@ -115,13 +115,11 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
     def _in_enough_steps(self, level: UnlikeLevel) -> UnlikeLevel:
         """The ``level`` in as many load steps as their errors call for, which all finer cells take, too."""
         while level.history and level.stick:
-            began = self.clock.cost().cpu_s
             level, self.followed = _path_errors(self, level)
             assert level.history
             self.path = path = replace(level.history.path, before=None)
             more = more_steps(path, self.followed, _step_errors(level), self.scene.fem.accuracy)
-            spent = self.clock.cost().cpu_s - began
-            if not more or spent * more.substeps / path.substeps > driver.SHARE * self.clock.remaining():
+            if not more or self.clock.remaining() <= 0:
                 break
             self.path = more
             level = _solve_on(self, more, level.vertices, max(level.a), self.clock)

@@ -2,6 +2,7 @@
 
 from partialslip.result.cost import Clock as Clock
 from partialslip.result.cost import Cost as Cost
+from partialslip.result.cost import Pace as Pace
 from partialslip.result.fields import DeformedBody as DeformedBody
 from partialslip.result.fields import Slip as Slip
 from partialslip.result.fields import StressAt as StressAt
