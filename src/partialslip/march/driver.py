@@ -171,9 +171,8 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
     place, last = 0.0, len(problem.meshes) - 1
     while True:
         mesh = _mesh_at(problem.meshes, place)
-        if level and problem.too_large(level, len(problem.cells(level, mesh))):
-            break
-        if errors and not pace.fits(_LEFT):
+        spent = bool(errors) and not pace.fits(_LEFT)
+        if level and (spent or problem.too_large(level, len(problem.cells(level, mesh)))):
             break
         before, level = level, problem.solve(level, mesh)
         meshes += 1
