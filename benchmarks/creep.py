@@ -10,13 +10,13 @@ of the largest one of a steady state; Errors are given over the estimate, with t
 """
 
 import argparse
-import math
 import time
 from collections import defaultdict
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from estimates import OverTime, limited, shaped
 
 import partialslip
 from partialslip import Result, Scene
@@ -28,7 +28,6 @@ from partialslip.judge import compare
 from partialslip.judge.means import norm_errors
 from partialslip.scene.reading import parse_scene
 from partialslip.threads import one_thread
-from estimates import OverTime, limited, shaped
 
 MANY = 200  # cycles asked for: they end where nothing but rounding changes
 KINDS = ("hertz", "flat-rounded", "x^4", "f(x)", "hertz", "tabulated", "f(x)")

@@ -111,7 +111,7 @@ def to_result(
         contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
         state=_state(scene, problem, solution, estimate if adapted.errors else {}),
         stress_at=StressAt(BodyStresses.of(scene, problem, solution).inside) if known_inside else None,
-        undetermined={"stresses": _SLIDES} if inside and not known_inside else {},
+        undetermined={**found.undetermined, **({"stresses": _SLIDES} if inside and not known_inside else {})},
         surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
         edges=edges_near_contact(solution, L, origin),
         plates=plates,

@@ -14,7 +14,17 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
-from partialslip.friction.limit import LIMIT, SLIPS, ahead, cycle_change, cycles_settled, limit, lost, undecided
+from partialslip.friction.limit import (
+    LIMIT,
+    SLIPS,
+    ahead,
+    cycle_change,
+    cycles_settled,
+    limit,
+    lost,
+    room_of,
+    undecided,
+)
 from partialslip.friction.load_path import Path
 from partialslip.friction.zone_ends import turning_points
 from partialslip.telling import tell
@@ -76,11 +86,11 @@ class History:
         never did.
     events : int
         Number of instants at which rates change, on legs that are followed.
-    rooms : (k, n) array
-        Room 2 f p - \\|dq\\| in each of the last cycles in turn, at most 3; none if the first loading determines the
-        cycle.
-    undecided : (n,) bool array or None
-        Nodes of which the cycles do not tell whether they slip in the steady state.
+    rooms : (k, n) array or None
+        Room 2 f p - \\|dq\\| in each of the last cycles in turn, at most 3; None if no cycles were followed.
+    steady : bool
+        Whether the last cycle is steady: q changed by no more than ``path.steady`` of its bound, and of each node it is
+        known whether it slips in the steady state.
     """
 
     path: Path
@@ -104,7 +114,7 @@ class History:
     stuck: Array | None = None
     events: int = 0
     rooms: Array | None = None
-    undecided: Mask | None = None
+    steady: bool = True
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "History":
         """History of some ``nodes`` only (indices)."""
@@ -115,9 +125,7 @@ class History:
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "pressures", "end")
         }
         fields["around"] = self.around.of(nodes)
-        some = {
-            key: getattr(self, key) for key in ("room", "slipped", "held", "changed", "stuck", "rooms", "undecided")
-        }
+        some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed", "stuck", "rooms")}
         fields |= {key: each[..., nodes] for key, each in some.items() if each is not None}
         return replace(self, points=points, **fields)
 
@@ -188,7 +196,7 @@ class History:
         """
         if self.rooms is None:
             return None
-        room = self.rooms[-1]
+        room = 2 * self.bound - np.abs(self.change)
         gone = np.where(lost(self.rooms), room, 0.0)
         if self.changed is None or self.lasting is None:
             return gone
@@ -379,18 +387,20 @@ def follow(
         largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
         bound = f * went[-1][-1][1]
         off = max(float(point.residual.max()) for point in points[-len(went) :])
-        before = points[-1 - len(went)].x
-        changes.append(cycle_change(points[-1].x, before, path.settled * bound, largest, off))
-        rooms.append(_room(path, [(way[-1][0].x, f * way[-1][1]) for way in went]))
-        unclear = undecided(rooms, bound, cycle_change(points[-1].x, before, bound, largest, off), cycle + 1)
-        if cycles_settled(changes) and not unclear.any():
+        was = points[-1 - len(went)].x
+        changes.append(cycle_change(points[-1].x, was, path.settled * bound, largest, off))
+        visited = [(way[-1][0].x, f * way[-1][1]) for way in went]
+        rooms.append(room_of(visited, path.ends if path.in_phase else None))
+        moved = cycle_change(points[-1].x, was, bound, largest, off)
+        decided = not undecided(rooms, bound, moved, cycle + 1).any()
+        if cycles_settled(changes) and decided:
             break
         ended.append(points[-1].x)
         if skip and cycle + 1 < path.cycles and (times := ahead(ended, bound)) is not None:
             skip(times)
             skipped = limit(ended, bound, times)
-            points[-1], ended, changes = replace(points[-1], x=skipped, shift=np.nan), [skipped], []
-            rooms = []
+            points[-1], ended = replace(points[-1], x=skipped, shift=np.nan), [skipped]
+            changes, rooms = [], []
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]
     slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)
@@ -427,18 +437,9 @@ def follow(
         around=Steps(tuple(ways), forces, pressures, f, np.cumsum([step.shift for step in steps])),
         f=f,
         rooms=np.array(rooms[-3:]),
-        undecided=unclear,
+        steady=decided and (moved <= path.steady or cycles_settled(changes)),
         **anew,
     )
-
-
-def _room(path: Path, states: Sequence[tuple[Array, Array]]) -> Array:
-    """Room (n,) that q leaves up to the bounds in a cycle, from q and the bound f p, (n,) each, at its load points."""
-    if path.in_phase:
-        (q1, bound1), (q2, bound2) = (states[end] for end in path.ends)
-        return bound1 + bound2 - np.abs(q2 - q1)
-    q, bounds = (np.array(each) for each in zip(*states, strict=True))
-    return (bounds - q).min(axis=0) + (bounds + q).min(axis=0)
 
 
 def _reversed(path: Path, first: Solution, went: "_Way", f: Array) -> History:

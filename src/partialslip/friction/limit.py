@@ -82,7 +82,18 @@ def limit(states: Sequence[Array], bound: Array, times: float) -> Array:
     return np.clip(states[-1] + (states[-1] - states[-2]) * times, -bound, bound)
 
 
-def falls(rooms: Sequence[Array]) -> Array:
+def room_of(visited: Sequence[tuple[Array, Array]], ends: tuple[int, int] | None) -> Array:
+    """Room (n,) up to the bounds in a cycle, of q and the bounds f p, (n,) each, at its load points: 2 f p - \\|dq\\|
+    between the ``ends`` of the cycle; out of phase, where there are none, the least room up to f p and down to -f p."""
+    if ends:
+        (q1, bound1), (q2, bound2) = (visited[end] for end in ends)
+        return bound1 + bound2 - np.abs(q2 - q1)
+    q, bounds = (np.array(each) for each in zip(*visited, strict=True))
+    room: Array = (bounds - q).min(axis=0) + (bounds + q).min(axis=0)
+    return room
+
+
+def falls(rooms: Sequence[Array] | Array) -> Array:
     """What the ``rooms`` (n,) of cycles in turn will still lose: of rooms in geometric progression all that follows, by
     Aitken's method; nan where the last three tell no progression, or where there are fewer."""
     if len(rooms) < 3:
@@ -92,13 +103,13 @@ def falls(rooms: Sequence[Array]) -> Array:
     return np.where(fall <= 0, 0.0, left)
 
 
-def lost(rooms: Sequence[Array]) -> Mask:
+def lost(rooms: Sequence[Array] | Array) -> Mask:
     """Nodes (n,) whose room has no limit but none: of room that falls in geometric progression nothing is left, of room
     that falls with a power of the cycles a part."""
     return falls(rooms) >= _LOST * rooms[-1]
 
 
-def undecided(rooms: Sequence[Array], bound: Array, moved: float, cycles: int) -> Mask:
+def undecided(rooms: Sequence[Array] | Array, bound: Array, moved: float, cycles: int) -> Mask:
     """Nodes (n,) of which it is not known yet whether they slip in the steady state.
 
     Parameters

@@ -9,7 +9,7 @@ from typing import NamedTuple, Self, TypeVar
 import numpy as np
 
 from partialslip.bars import BARS, CERTIFICATE_BAR
-from partialslip.judge.measures import Measure
+from partialslip.judge.measures import Measure, unsteady
 from partialslip.result import Result
 from partialslip.scene import Scene
 
@@ -171,7 +171,8 @@ def judge_regime(
 
     The regime is not judged in four cases: no quantity has a bar; the slip or stick zone that distinguishes the two
     names is narrower than the bars of m and n; the mean of Q is nearer to its bound, in f P, than these bars in a: the
-    room for it is an integral over the stick zone; the stick zone is ``unknown`` (by quantity, why).
+    room for it is an integral over the stick zone; the stick zone is ``unknown`` (by quantity, why). Nor is another
+    name judged where the slip of the cycles does not tell it, or one result alone is not of the steady state.
     """
     found, true = result.regime, reference.regime
     own = bars.get("regime", Bar(1.0))
@@ -183,6 +184,8 @@ def judge_regime(
         outcome, reason = Outcome.PASSED, ""
     elif "m" in unknown:
         outcome, reason = Outcome.NOT_JUDGED, unknown["m"]
+    elif why := unsteady(result, reference) or _untold(result, reference):
+        outcome, reason = Outcome.NOT_JUDGED, why
     elif near := _too_near(result, reference, width * reference.a) or _barely(result, reference, scene, width):
         outcome, reason = Outcome.NOT_JUDGED, near
     else:
@@ -204,6 +207,16 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
     if (names == _TENSIONS or "sliding" in names) and zone.stick_half_width <= width:
         return "the stick zone is narrower than the bar"
     return ""
+
+
+def _untold(result: Result, reference: Result) -> str:
+    """Return which result does not tell whether it ratchets, as the other one does, and why."""
+    if "ratchets" not in {result.regime, reference.regime}:
+        return ""
+    calls = (
+        f"{each.method}: {each.undetermined['regime']}" for each in (result, reference) if "regime" in each.undetermined
+    )
+    return next(calls, "")
 
 
 def _barely(result: Result, reference: Result, scene: Scene, share: float) -> str:

@@ -37,7 +37,8 @@ EndSlip = Literal["forwards", "backwards", "never", "part of the cycle"]
 class SteadyState(NamedTuple):
     """What a method finds of the steady state: ``regime``, ``centre`` and ``half_width`` of the stick zone (None if
     nothing sticks), ``notes``, how the ends of the contact slip, where the pressure varies, and the ends of the zone
-    that never slips, (nan, nan) if there is none, None if it is not known. Lengths are in any one unit."""
+    that never slips, (nan, nan) if there is none, None if it is not known. Lengths are in any one unit.
+    ``undetermined`` as in :class:`Result`."""
 
     regime: Regime
     centre: float | None = None
@@ -45,6 +46,7 @@ class SteadyState(NamedTuple):
     notes: tuple[str, ...] = ()
     slips: tuple[EndSlip, EndSlip] | None = None
     permanent: tuple[float, float] | None = None
+    undetermined: Mapping[str, str] = {}
 
     def placed(self, origin: float, length: float) -> "SteadyState":
         """The same in m: ``length`` (m) is the unit, and the zero is at ``origin`` (m)."""
@@ -108,7 +110,8 @@ class Result(Drawn):
         Parts of the estimates by source (``discretisation``, ``steps``, ``start``, ``table``, ``rounding``) and key of
         ``estimate``.
     undetermined : mapping of str to str
-        By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference.
+        By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference; ``regime``: why
+        its name is not certain; ``steady``: why the cycles do not tell the steady state.
     path_dependent : bool
         Whether slip reverses between the load points and the result is that of one load step, which gradual loads do
         not have.
@@ -190,6 +193,7 @@ class Result(Drawn):
             notes=found.notes,
             end_slips=found.slips,
             permanent=found.permanent,
+            undetermined=found.undetermined,
         )
 
     def __repr__(self) -> str:
