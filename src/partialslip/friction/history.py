@@ -14,17 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
-from partialslip.friction.limit import (
-    LIMIT,
-    SLIPS,
-    ahead,
-    cycle_change,
-    cycles_settled,
-    limit,
-    lost,
-    room_of,
-    undecided,
-)
+from partialslip.friction.limit import LIMIT, SLIPS, Cycles, ahead, limit, lost, room_of
 from partialslip.friction.load_path import Path
 from partialslip.friction.zone_ends import turning_points
 from partialslip.telling import tell
@@ -376,7 +366,7 @@ def follow(
     points, taken = [certified([step for step, _ in went[0]])], len(first)
     if path.half:
         return _reversed(path, points[0], went[0], f)
-    ended, changes, rooms = [points[0].x], list[float](), list[Array]()  # of cycles, since some were skipped
+    ended, cycles = [points[0].x], Cycles(path.settled, path.steady)
     for cycle in range(path.cycles):
         went = []
         for start, end, fractions in zip((path.cycle[-1], *path.cycle), path.cycle, ways, strict=False):
@@ -387,20 +377,16 @@ def follow(
         largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
         bound = f * went[-1][-1][1]
         off = max(float(point.residual.max()) for point in points[-len(went) :])
-        was = points[-1 - len(went)].x
-        changes.append(cycle_change(points[-1].x, was, path.settled * bound, largest, off))
-        visited = [(way[-1][0].x, f * way[-1][1]) for way in went]
-        rooms.append(room_of(visited, path.ends if path.in_phase else None))
-        moved = cycle_change(points[-1].x, was, bound, largest, off)
-        decided = not undecided(rooms, bound, moved, cycle + 1).any()
-        if cycles_settled(changes) and decided:
+        room = room_of([(way[-1][0].x, f * way[-1][1]) for way in went], path.ends if path.in_phase else None)
+        cycles.add(points[-1].x, points[-1 - len(went)].x, bound, room, largest, off)
+        if cycles.end:
             break
         ended.append(points[-1].x)
         if skip and cycle + 1 < path.cycles and (times := ahead(ended, bound)) is not None:
             skip(times)
             skipped = limit(ended, bound, times)
             points[-1], ended = replace(points[-1], x=skipped, shift=np.nan), [skipped]
-            changes, rooms = [], []
+            cycles.skipped()
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]
     slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)
@@ -436,8 +422,8 @@ def follow(
         load_steps=taken,
         around=Steps(tuple(ways), forces, pressures, f, np.cumsum([step.shift for step in steps])),
         f=f,
-        rooms=np.array(rooms[-3:]),
-        steady=decided and (moved <= path.steady or cycles_settled(changes)),
+        rooms=np.array(cycles.rooms[-3:]),
+        steady=cycles.steady,
         **anew,
     )
 

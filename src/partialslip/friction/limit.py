@@ -131,3 +131,34 @@ def undecided(rooms: Sequence[Array] | Array, bound: Array, moved: float, cycles
     fall = np.maximum(rooms[-2] - room, 0.0)
     unclear = np.where(np.isnan(left), fall > (1 - _KEPT) * room, (left > (1 - _KEPT) * room) & (left < _LOST * room))
     return near & unclear
+
+
+class Cycles:
+    """Cycles of one path, in turn: whether they end, and whether the last one is steady.
+
+    Parameters
+    ----------
+    settled : float
+        Largest change of q over the last cycle, in the bound; rounding comes on top.
+    steady : float
+        The same of a steady state.
+    """
+
+    def __init__(self, settled: float, steady: float) -> None:
+        self._settled, self._steady, self._count = settled, steady, 0
+        self.skipped()
+
+    def skipped(self) -> None:
+        """Forget the cycles: those that follow do not begin where they ended."""
+        self.changes, self.rooms = list[float](), list[Array]()
+
+    def add(self, q: Array, before: Array, bound: Array, room: Array, largest: float, off: float) -> None:
+        """Add a cycle that changes the forces ``before`` it (n,) to ``q`` and leaves ``room`` (n,); ``largest`` and
+        ``off`` as for :func:`cycle_change`."""
+        self._count += 1
+        self.changes.append(cycle_change(q, before, self._settled * bound, largest, off))
+        self.rooms.append(room)
+        moved = cycle_change(q, before, bound, largest, off)
+        decided = not undecided(self.rooms, bound, moved, self._count).any()
+        self.end = decided and cycles_settled(self.changes)
+        self.steady = self.end or (decided and moved <= self._steady)
