@@ -100,7 +100,6 @@ def to_result(
         counts=_counts(solution, adapted, extra),
         certificate=certified,
         last_cycle_change=change,
-        net_slip=history.ratchets if history and history.repeats else None,
         estimate=estimate,
         shares={name: share for name, share in shares.items() if share},
         notes=found.notes
@@ -114,7 +113,7 @@ def to_result(
         contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
         state=_state(scene, problem, solution, estimate if adapted.errors else {}),
         stress_at=StressAt(BodyStresses.of(scene, problem, solution).inside) if known_inside else None,
-        undetermined={"stresses": _SLIDES} if inside and not known_inside else {},
+        undetermined={**found.undetermined, **({"stresses": _SLIDES} if inside and not known_inside else {})},
         surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
         edges=edges_near_contact(solution, L, origin),
         plates=plates,

@@ -46,7 +46,8 @@ class Path:
     and |dQ| >= f |dP| from each load point to the next, so that Q drives all slip one way.
 
     Cycles end where one changes the tangential force at no node by more than ``settled`` of its bound, and rounding:
-    where the scene does not tell how many there are, they lead to the steady state.
+    where the scene does not tell how many there are, they lead to the steady state. ``steady`` is the change that
+    counts as none in a steady state, whoever tells how many cycles there are.
 
     ``substeps`` is the smallest number of steps between points. ``ways`` are the steps as ascending fractions up to 1:
     to the last point first, then to each point of the cycle; default: ``substeps`` equal steps. A path that is
@@ -66,6 +67,7 @@ class Path:
     one_way: bool = False
     ways: tuple[tuple[float, ...], ...] = ()
     settled: float = 0.0
+    steady: float = 0.0
     followed: bool = False
     turns: bool = False
     actuator: float | None = None
@@ -160,6 +162,7 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None, on_pin: bool
         half=half,
         one_way=one_way,
         settled=settled,
+        steady=near,
         actuator=actuator,
     )
 

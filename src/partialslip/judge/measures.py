@@ -77,8 +77,18 @@ def _absent(quantity: str, reference: Result, scene: Scene) -> str:
     return ""
 
 
+def unsteady(result: Result, reference: Result) -> str:
+    """Return which of both alone is not of the steady state, and why; empty if both are, or none is."""
+    calls = [
+        f"{each.method}: {each.undetermined['steady']}" for each in (result, reference) if "steady" in each.undetermined
+    ]
+    return calls[0] if len(calls) == 1 else ""
+
+
 def _undetermined(quantity: str, result: Result, reference: Result, unknown: Mapping[str, str]) -> str:
     """Return why the quantity is ``unknown``, or which method leaves it undetermined and why; empty if it is known."""
+    if quantity in _SHEAR and quantity != "dQ" and (why := unsteady(result, reference)):
+        return why
     key = "q" if quantity == "q_max" else quantity
     if key in unknown:
         return unknown[key]

@@ -9,9 +9,8 @@ from typing import NamedTuple, Self, TypeVar
 import numpy as np
 
 from partialslip.bars import BARS, CERTIFICATE_BAR
-from partialslip.friction.history import STEADY
 from partialslip.judge.known import base, error_of
-from partialslip.judge.measures import Measure
+from partialslip.judge.measures import Measure, unsteady
 from partialslip.result import Result
 from partialslip.scene import Scene
 
@@ -174,11 +173,11 @@ def judge_regime(
 ) -> Verdict:
     """Judge the name of the regime of ``result`` against ``reference``, with ``bars`` by quantity.
 
-    The regime is not judged in six cases: no quantity has a bar; the reference has no error estimate of a stick zone;
+    The regime is not judged in seven cases: no quantity has a bar; the reference has no error estimate of a stick zone;
     the slip or stick zone that distinguishes the two names is narrower than the bars of m and n, or than the
     reference's estimates; the mean of Q is nearer to its bound, in f P, than these bars in a: the room for it is an
     integral over the stick zone; one of both ratchets, and slip of the other adds up, too, but less than it calls
-    ratcheting; the stick zone is ``unknown`` (by quantity, why).
+    ratcheting; one result alone is not of the steady state; the stick zone is ``unknown`` (by quantity, why).
     """
     found, true = result.regime, reference.regime
     own = bars.get("regime", Bar(1.0))
@@ -193,11 +192,9 @@ def judge_regime(
         outcome, reason = Outcome.NOT_JUDGED, unknown["m"]
     elif not all(map(math.isfinite, own_errors)):
         outcome, reason = Outcome.NOT_JUDGED, f"{reference.method} has no error estimate of m and n"
-    elif near := (
-        _too_near(result, reference, width * reference.a)
-        or _barely(result, reference, scene, width)
-        or _adds_little(result, reference)
-    ):
+    elif why := unsteady(result, reference) or _untold(result, reference):
+        outcome, reason = Outcome.NOT_JUDGED, why
+    elif near := _too_near(result, reference, width * reference.a) or _barely(result, reference, scene, width):
         outcome, reason = Outcome.NOT_JUDGED, near
     else:
         outcome, reason = Outcome.MISSED, f"{found}, not {true}"
@@ -220,6 +217,16 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
     return ""
 
 
+def _untold(result: Result, reference: Result) -> str:
+    """Return which result does not tell whether it ratchets, as the other one does, and why."""
+    if "ratchets" not in {result.regime, reference.regime}:
+        return ""
+    calls = (
+        f"{each.method}: {each.undetermined['regime']}" for each in (result, reference) if "regime" in each.undetermined
+    )
+    return next(calls, "")
+
+
 def _barely(result: Result, reference: Result, scene: Scene, share: float) -> str:
     """Return that the mean of Q is within ``share`` f P of a bound of the ``reference``, if one of both ratchets."""
     limits, room = reference.limits, share * scene.friction.f * scene.P
@@ -229,17 +236,6 @@ def _barely(result: Result, reference: Result, scene: Scene, share: float) -> st
     if "ratchets" not in names or "sliding" in names or min(abs(mean - least), abs(mean - most)) > room:
         return ""
     return "the mean of Q is nearer to the bound for a steady state than the bar can tell"
-
-
-def _adds_little(result: Result, reference: Result) -> str:
-    """Return that the cycles of the one of both that does not ratchet add up to little slip, which is no steady
-    state either; empty if one of both has no such cycles."""
-    names = {result.regime, reference.regime}
-    other = result if reference.regime == "ratchets" else reference
-    if "ratchets" not in names or "sliding" in names or other.net_slip is None or not other.net_slip > STEADY:
-        return ""
-    added = f"every cycle adds up to {other.net_slip:.1g} times the slip of half a cycle"
-    return f"{other.method}: {added}, too little to tell whether the contact ratchets"
 
 
 def conditions(result: Result) -> tuple[Verdict, ...]:

@@ -253,7 +253,6 @@ def _result(
         },
         certificate=answer.certificate,
         last_cycle_change=answer.change,
-        net_slip=history.ratchets if history and history.repeats else None,
         estimate=errors,
         shares=shares,
         notes=found.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),

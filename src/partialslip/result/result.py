@@ -38,7 +38,8 @@ EndSlip = Literal["forwards", "backwards", "never", "part of the cycle"]
 class SteadyState(NamedTuple):
     """What a method finds of the steady state: ``regime``, ``centre`` and ``half_width`` of the stick zone (None if
     nothing sticks), ``notes``, how the ends of the contact slip, where the pressure varies, and the ends of the zone
-    that never slips, (nan, nan) if there is none, None if it is not known. Lengths are in any one unit."""
+    that never slips, (nan, nan) if there is none, None if it is not known. Lengths are in any one unit.
+    ``undetermined`` as in :class:`Result`."""
 
     regime: Regime
     centre: float | None = None
@@ -46,6 +47,7 @@ class SteadyState(NamedTuple):
     notes: tuple[str, ...] = ()
     slips: tuple[EndSlip, EndSlip] | None = None
     permanent: tuple[float, float] | None = None
+    undetermined: Mapping[str, str] = {}
 
     def placed(self, origin: float, length: float) -> "SteadyState":
         """The same in m: ``length`` (m) is the unit, and the zero is at ``origin`` (m)."""
@@ -88,9 +90,6 @@ class Result(Drawn):
         Residuals in f p0 (p0 for the normal problem); equilibrium relative to the load.
     last_cycle_change : float or None
         Largest change of q over the last cycle, in f p0; None if no whole cycle was followed.
-    net_slip : float or None
-        Largest slip that the last cycle adds up to, in the slip of half a cycle: zero in a steady state; None if no
-        cycle was followed whose tractions repeat.
     estimate : mapping of str to float
         The method's error estimates: ``a``, ``m``, ``n``, ``left``, ``right`` as fractions of a; ``p``, ``q``, ``q1``,
         ``q2`` as relative L2 errors of cell averages.
@@ -112,7 +111,8 @@ class Result(Drawn):
         Parts of the estimates by source (``discretisation``, ``steps``, ``start``, ``table``, ``rounding``) and key of
         ``estimate``.
     undetermined : mapping of str to str
-        By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference.
+        By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference; ``regime``: why
+        its name is not certain; ``steady``: why the cycles do not tell the steady state.
     path_dependent : bool
         Whether slip reverses between the load points and the result is that of one load step, which gradual loads do
         not have.
@@ -148,7 +148,6 @@ class Result(Drawn):
     limits: Mapping[str, float] = field(default_factory=dict)
     certificate: Mapping[str, float] = field(default_factory=dict)
     last_cycle_change: float | None = None
-    net_slip: float | None = None
     estimate: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     bodies: tuple[DeformedBody, ...] = ()
@@ -195,6 +194,7 @@ class Result(Drawn):
             notes=found.notes,
             end_slips=found.slips,
             permanent=found.permanent,
+            undetermined=found.undetermined,
         )
 
     def __repr__(self) -> str:
