@@ -8,8 +8,9 @@ import numpy as np
 from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST
+from partialslip.score.ends import possible_averages
 from partialslip.score.headers import FIRST
-from partialslip.score.kinds import Kind, cells_around, cells_of_nodes
+from partialslip.score.kinds import EVERY, Average, Kind, cells_around, cells_of_nodes
 
 _DIGITS = 8  # accuracy: digits of x: numbers with fewer count as rounded
 _WHOLE = 1e-5  # accuracy: of a unit in the last place: deviation from a whole number of units
@@ -43,6 +44,8 @@ class Samples:
         Values at points, means over cells, or nodal forces of linear elements over the nodes' weights.
     guessed : bool
         Whether the kind was guessed, and not given.
+    averages : tuple of Average
+        What the values may be, the kind first.
     """
 
     x: Array
@@ -57,6 +60,7 @@ class Samples:
     p1: Array | None = None
     kind: Kind = "sampled"
     guessed: bool = False
+    averages: tuple[Average, ...] = (Average("sampled"),)
 
     @property
     def p_mean(self) -> Array:
@@ -131,10 +135,18 @@ def samples(
         dq, q1, q2 = 2 * shears[0], -shears[0], shears[0]
     else:
         dq, q1, q2 = shears[0], None, None
-    own: Kind = kind or ("nodal" if normal == "Fn" else "sampled")
+    averages = (Average(kind),) if kind else _guessed(x, p, normal == "Fn")
+    own = averages[0].kind
     if normal != "Fn" and own != "sampled":
         cells = cells_around(x) if own == "mean" else cells_of_nodes(x)
-    return Samples(x, p, dq, q1, q2, cells, resolution, p1=p1, kind=own, guessed=kind is None)
+    return Samples(x, p, dq, q1, q2, cells, resolution, p1=p1, kind=own, guessed=kind is None, averages=averages)
+
+
+def _guessed(x: Array, p: Array, forces: bool) -> tuple[Average, ...]:
+    """What the values of the pressure ``p`` at ``x`` (n,) may be, the likeliest first: nodal forces or values at points
+    where they may be."""
+    likely: Kind = "nodal" if forces else "sampled"
+    return possible_averages(x, p, sorted(EVERY, key=lambda each: each.kind != likely))
 
 
 def _check(values: Array, names: list[str], origin: str) -> None:
