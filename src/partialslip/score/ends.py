@@ -7,7 +7,7 @@ value above zero and the first that is zero. How far, depends on what the values
 Within this bracket one model is fitted to the nearest values: the average of (e - x)^(1/2) (c0 + c1 (e - x) + ...).
 All ends, and all averages, that fit as well as noise of the size of the best fit's misfit allows are possible. A second
 reading leaves the nearest values out: what blurs an end over some length, as friction by a penalty does, misleads the
-first but not the second. The interval of both is the uncertainty.
+first more than the second. The interval of both is the uncertainty.
 """
 
 from collections.abc import Sequence
@@ -20,12 +20,12 @@ from scipy.special import fdtri, stdtrit
 from partialslip.arrays import Array, Indices
 from partialslip.score.kinds import Average
 
-_NEAR = 8  # accuracy: fewest points of a fit beside the end
+_NEAR = (8, 16)  # accuracy: fewest points of fits beside the end; the one that leaves it less uncertain counts
 _TERMS = (3, 4)  # accuracy: of its polynomial; of both the one that leaves the end less uncertain
 _RISEN = 10.0  # accuracy: times the noise: least value where a fit begins
 _MOST = 48  # cost: most points of a fit; longer ones are thinned out
 _DOUBT = 1e-3  # accuracy: probability that noise alone makes the right end fit so much worse than the best
-_SCAN, _AGAIN = 61, 6  # cost: ends tried at once, and how often between the neighbours of the best
+_SCAN, _AGAIN = 41, 5  # cost: ends tried at once, and how often between the neighbours of the best
 FEWEST = 3  # accuracy: points beyond the end of a square root that show a drift
 NOISE_FACTOR = 4.0  # accuracy: standard deviations of the noise: smaller values count as noise
 ZERO_LEVEL = 1e-9  # accuracy: of the largest value: smaller values count as zero
@@ -90,14 +90,15 @@ def possible_averages(x: Array, p: Array, averages: Sequence[Average]) -> tuple[
     """Which of ``averages`` the values of the pressure ``p`` at ``x`` (n,) may be, from both ends of the contact."""
     least = NOISE_FACTOR * noise_level(p, x)
     touching = zone_around_peak(p, least)
-    if touching is None or touching[1] - touching[0] < _NEAR:
+    if touching is None or touching[1] - touching[0] < max(_TERMS) + 3:
         return tuple(averages)
     first, last = touching
     left = _Reading(-x[::-1], p[::-1], len(x) - 1 - first, len(x) - 1 - last, least).possible(averages)
     right = _Reading(x, p, last, first, least).possible(averages)
-    return tuple(each for each in averages if each in left and each in right) or tuple(
-        each for each in averages if each in left or each in right
-    )
+    both = [each for each in averages if each in left and each in right]
+    found = both or [each for each in averages if each in left or each in right]
+    plain = [each for each in found if each.count == 1]  # an average over points must show
+    return tuple(plain or found)
 
 
 def read_right_end(
@@ -160,12 +161,17 @@ class _Reading:
     """Readings of the right end of the zone from point ``first`` to ``last``."""
 
     def __init__(self, x: Array, values: Array, last: int, first: int, least: float) -> None:
+        inner = values[first : last + 1][::-1]  # a fit reaches no farther than the values rise
+        (fallen,) = np.nonzero(inner < np.maximum.accumulate(inner) - 2 * least)
+        first = last - int(inner[: fallen[0] if len(fallen) else len(inner)].argmax())
         self.x, self.values, self.last, self.first = x, values, last, first
         self.spacing = float(x[last] - x[max(last - 1, 0)])
-        risen = np.flatnonzero(values[first : max(last + 2 - _NEAR, first + 1)] >= _RISEN * least)
-        self.begin = first + (int(risen[-1]) if len(risen) else 0)
+        (risen,) = np.nonzero(values[first : last + 1] >= _RISEN * least)
+        self.risen = first + int(risen[-1] if len(risen) else 0)
         # what counts as zero, in c: the values near the end are about the averages of c (end - x)^(1/2)
-        self.zero = max(least, ZERO_LEVEL * values.max()) / values[self.begin] * float(x[last] - x[self.begin]) ** 0.5
+        begin = self._begin(_NEAR[0])
+        zero = max(least, ZERO_LEVEL * float(values.max()))
+        self.zero = zero / float(values[begin]) * float(x[last] - x[begin]) ** 0.5
         self.more = self.spacing if last + 1 == len(x) else 0.0
 
     def possible(self, averages: Sequence[Average]) -> tuple[Average, ...]:
@@ -177,14 +183,18 @@ class _Reading:
         near, possible = self._near(averages)
         low, high = self._bracket(possible)
         found = near._replace(low=min(near.low, low), high=max(near.high, high))  # no more than the bracket is known
-        far = self._far(high, 1)
+        average = possible[0]
+        far = self._far(average, high, 1)
         if far is not None and far.better(near):
-            found = self._blurred(found, far, high)
+            found = self._blurred(average, found, far, high)
         elif far is not None:
             # what misleads halves with twice the distance, so that the end is off by twice what it moves, if it does
             inner = min(far.low, 2 * far.best - near.best)
             if far.high >= low:
-                found = near._replace(low=min(near.low, max(inner, low - self.spacing)), high=max(near.high, far.high))
+                found = near._replace(
+                    low=min(near.low, max(inner, float(self.x[self.last]) - self.spacing)),
+                    high=max(near.high, far.high),
+                )
             else:
                 found = found._replace(low=min(found.low, inner))
         drifted = self._drifted(possible) if drifts else None
@@ -198,31 +208,35 @@ class _Reading:
         high = max(each.begins(self.x, self.last + 1) + each.hidden(self.zero, self.spacing) for each in averages)
         return low, high + self.more
 
+    def _begin(self, count: int) -> int:
+        """First point of a window of ``count`` points, or more: the values there are well above the noise."""
+        return max(min(self.last + 1 - count, self.risen), self.first)
+
     def _near(self, averages: Sequence[Average]) -> tuple[_Fit, tuple[Average, ...]]:
         """From the values beside the end, and those beyond; with the averages that are possible."""
-        beyond = int(np.searchsorted(self.x, self._bracket(averages)[1]))
-        window = _thinned(self.begin, min(max(self.last + 2, beyond), len(self.x) - 1))
-        most = max(int(np.count_nonzero(window <= self.last)) - 4, 1)
+        beyond = min(max(self.last + 2, int(np.searchsorted(self.x, self._bracket(averages)[1]))), len(self.x) - 1)
         found = []
-        for terms in {min(each, most) for each in _TERMS}:
-            freedom = max(len(window) - terms - 1, 1)
+        for begin, terms in product({self._begin(count) for count in _NEAR}, _TERMS):
+            window = _thinned(begin, beyond)
+            inside = int(np.count_nonzero(window <= self.last))
+            terms = max(min(terms, inside - 2), 1)
+            freedom = max(inside - terms - 1, 1)
             tried = [self._misfits(each, window, *self._bracket([each]), 0.5, terms) for each in averages]
             within = min(misfits.min() for _, misfits in tried) * _worse(freedom)
             fits = {each: _fit(*of, within, freedom) for each, of in zip(averages, tried, strict=True)
                     if of[1].min() <= within}  # fmt: skip
             best = min(fits.values(), key=lambda fit: fit.misfit)
             low, high = min(fit.low for fit in fits.values()), max(fit.high for fit in fits.values())
-            found.append((best._replace(low=low, high=high), tuple(fits)))
+            found.append((best._replace(low=low, high=high), tuple(sorted(fits, key=lambda each: fits[each].misfit))))
         (fit, possible), closest = (
             min(found, key=lambda each: each[0].width),
             min((each for each, _ in found), key=lambda each: each.misfit / each.freedom),
         )
         return fit._replace(misfit=closest.misfit, freedom=closest.freedom), possible
 
-    def _far(self, high: float, times: int) -> _Fit | None:
-        """Without the nearest points, so far away that what the values are averages of does not matter; ``times`` as
-        far. None if there are too few points."""
-        count, fewest = self.last + 1 - self.begin, max(_TERMS) + 3
+    def _far(self, average: Average, high: float, times: int) -> _Fit | None:
+        """Without the nearest points, and ``times`` as far away; None if there are too few points."""
+        count, fewest = self.last + 1 - self._begin(_NEAR[0]), max(_TERMS) + 3
         stop = self.last - times * (3 * count // 4)
         if times == 1:
             stop = max(stop, min(self.first + fewest - 1, self.last - 1))
@@ -232,15 +246,15 @@ class _Reading:
         fits = []
         for terms in _TERMS:
             freedom = len(window) - terms - 1
-            tried = self._misfits(Average("sampled"), window, float(self.x[stop]), high, 0.5, terms)
+            tried = self._misfits(average, window, float(self.x[stop]), high, 0.5, terms)
             fits.append(_fit(*tried, tried[1].min() * _worse(freedom), freedom))
         return min(fits, key=lambda fit: fit.width)
 
-    def _blurred(self, near: _Fit, far: _Fit, high: float) -> _Fit:
+    def _blurred(self, average: Average, near: _Fit, far: _Fit, high: float) -> _Fit:
         """Where the nearest points mislead: from farther and farther away, until the end moves by half a spacing at
         most. What misleads halves with twice the distance, so that the end is off by as much as it moved."""
         times = 2
-        while (farther := self._far(high, times)) is not None:
+        while (farther := self._far(average, high, times)) is not None:
             moved = abs(farther.best - far.best)
             if moved <= self.spacing / 2:
                 return farther._replace(low=min(far.low, farther.low, farther.best - moved), high=high)

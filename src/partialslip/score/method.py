@@ -28,7 +28,7 @@ _SLIDES = 0.02  # limit: of 2 f p0: where 2 f p - |dq| is less everywhere, the c
 _F_SIGMAS = 3.0  # accuracy: uncertainties of f: largest error of 2 f p
 _X_SIGMAS = 2.0  # accuracy: standard deviations of x: largest error of an end due to rounded x
 _CERTAIN = 0.05  # accuracy: of a: largest uncertainty of ends of the stick zone that are given ...
-_SPACINGS = 2.0  # accuracy: ... or this many spacings of the points
+_SPACINGS = 3.0  # accuracy: ... or this many spacings of the points
 
 
 class SeenContact(NamedTuple):

@@ -121,7 +121,10 @@ def samples(
     if normal == "Fn":
         if order == 2 and len(x) % 2 == 0:
             raise InputError(f"{origin}: {len(x)} nodes: must be an odd number for elements of order 2")
-        cells = _cells(x, order)
+        if order == 2:
+            values = _of_linear_elements(values)
+            x = values[0]
+        cells = cells_of_nodes(x)
         values[1:] /= np.diff(cells)
     for name, p in zip(names[1:pressed], values[1:pressed], strict=True):
         touching = np.count_nonzero(p > 0)
@@ -187,10 +190,10 @@ def _merged(values: Array) -> Array:
     return np.add.reduceat(values, first, axis=1) / np.diff(np.append(first, len(x)))
 
 
-def _cells(x: Array, order: int) -> Array:
-    """Ends of the nodes' cells, (n + 1,), m: each as wide as the integral of the node's shape function."""
-    if order == 1:
-        return cells_of_nodes(x)
-    widths = np.diff(x[::2])
-    inner = np.sort(np.concatenate([x[:-1:2] + widths / 6, x[2::2] - widths / 6]))
-    return np.concatenate([[x[0]], inner, [x[-1]]])
+def _of_linear_elements(values: Array) -> Array:
+    """Rows of x and of nodal forces of quadratic elements as of linear ones, whose shape functions are those of the
+    corners and half of those of the middles beside them."""
+    corners, middles = values[:, ::2].copy(), values[1:, 1::2] / 2
+    corners[1:, :-1] += middles
+    corners[1:, 1:] += middles
+    return corners
