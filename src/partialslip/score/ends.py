@@ -57,7 +57,7 @@ class _Fit(NamedTuple):
     def better(self, other: "_Fit") -> bool:
         """Whether this fit leaves less than the ``other`` by more than chance does."""
         ratio = other.misfit / other.freedom * self.freedom / self.misfit
-        return bool(ratio > fdtri(other.freedom, self.freedom, 1 - _DOUBT))
+        return other.misfit < np.inf and bool(ratio > fdtri(other.freedom, self.freedom, 1 - _DOUBT))
 
 
 def noise_level(values: Array, x: Array) -> float:
@@ -214,6 +214,9 @@ class _Reading:
 
     def _near(self, averages: Sequence[Average]) -> tuple[_Fit, tuple[Average, ...]]:
         """From the values beside the end, and those beyond; with the averages that are possible."""
+        if self.last - self.first < 2:  # too few to fit
+            low, high = self._bracket(averages)
+            return _Fit((low + high) / 2, low, high, np.inf, 1), tuple(averages)
         beyond = min(max(self.last + 2, int(np.searchsorted(self.x, self._bracket(averages)[1]))), len(self.x) - 1)
         found = []
         for begin, terms in product({self._begin(count) for count in _NEAR}, _TERMS):
@@ -253,13 +256,11 @@ class _Reading:
     def _blurred(self, average: Average, near: _Fit, far: _Fit, high: float) -> _Fit:
         """Where the nearest points mislead: from farther and farther away, until the end moves by half a spacing at
         most. What misleads halves with twice the distance, so that the end is off by as much as it moved."""
-        times = 2
-        while (farther := self._far(average, high, times)) is not None:
-            moved = abs(farther.best - far.best)
-            if moved <= self.spacing / 2:
-                return farther._replace(low=min(far.low, farther.low, farther.best - moved), high=high)
-            far, times = farther, 2 * times
-        return near._replace(low=float(self.x[self.first]))
+        moved, times, low = abs(far.best - near.best), 2, far.low
+        while moved > self.spacing / 2 and (farther := self._far(average, high, times)) is not None:
+            moved, times, low = abs(farther.best - far.best), 2 * times, min(far.low, farther.low)
+            far = farther
+        return far._replace(low=min(low, far.best - moved), high=high)
 
     def _drifted(self, averages: Sequence[Average]) -> _Fit | None:
         """Where the values fall with the power 3/2, as two points and three show, whose ends agree better than with a

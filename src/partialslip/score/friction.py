@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.score.kinds import RUNNING
 
 # accuracy: points of the windows that are tried
 _COUNTS = (3, 4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)
@@ -17,7 +18,6 @@ _OWN = 2e-3  # accuracy: relative uncertainty of f up to which a side keeps a va
 _APART = 3.0  # accuracy: difference of two values of f, in their uncertainty, above which they differ
 _F_ROUNDING = 1e-12  # accuracy: least relative uncertainty of f
 _PRESSED = 0.2  # accuracy: of the largest p: where p is less, |dq|/(2 p) is too noisy to bound f
-_COUNTS_OF_MEANS = (3, 5, 7, 9)  # accuracy: numbers of points that dq alone may be averaged over
 _FLATTER = 0.1  # accuracy: of the uncertainty of f: what averaging p, too, must leave of it to be right
 _TOP = 3  # accuracy: number of points with the largest |dq|/(2 p) that bound f
 
@@ -44,7 +44,7 @@ def alike(p: Array, dq: Array, inside: slice) -> tuple[Array, Array, int]:
         return min(side.uncertainty / max(side.f, 1e-300) for side in (_outer(p, q), _outer(p[::-1], q[::-1])))
 
     q = dq[inside]
-    best = min(_COUNTS_OF_MEANS, key=lambda count: unsure(of(count)))
+    best = min(RUNNING, key=lambda count: unsure(of(count)))
     return (of(best), q, best) if unsure(of(best)) < _FLATTER * unsure(p[inside]) else (p[inside], q, 1)
 
 

@@ -37,8 +37,10 @@ class Average(NamedTuple):
     def powers(self, x: Array, at: Indices, ends: Array, powers: Array) -> Array:
         """Averages (e, n, k) of max(end - x, 0)^power at the points ``at`` (n,) of ``x``, for the ``ends`` (e,), m, and
         the ``powers`` (k,): in closed form, as divided differences of integrals of the power."""
-        shifts = range(-(self.count // 2), self.count // 2 + 1)
-        return sum(self._powers(x, at + shift, ends, powers) for shift in shifts) / self.count  # type: ignore[return-value]
+        neighbours = at[:, None] + np.arange(-(self.count // 2), self.count // 2 + 1)
+        every, places = np.unique(neighbours, return_inverse=True)
+        values = self._powers(x, every, ends, powers)
+        return np.asarray(values[:, places.reshape(neighbours.shape)].mean(axis=2))
 
     def _powers(self, x: Array, at: Indices, ends: Array, powers: Array) -> Array:
         before, here, after = (points[None, :, None] for points in _points(x, at))
@@ -58,8 +60,20 @@ class Average(NamedTuple):
         return 2 * (left_slope - right_slope) / (after - before)
 
 
-#: What values are taken for where no kind is given.
-EVERY = (Average("sampled"), Average("mean"), Average("nodal"), Average("sampled", 3), Average("sampled", 5))
+RUNNING = (3, 5, 7, 9)  # accuracy: numbers of points that values may be averaged over
+#: What values may be where no kind is given.
+EVERY = (*(Average(kind) for kind in KINDS), *(Average("sampled", count) for count in RUNNING))
+
+
+def note(averages: tuple[Average, ...], usual: Kind) -> str:
+    """What the values were guessed to be, any of ``averages``; empty if they are surely the ``usual`` kind."""
+    if averages == (Average(usual),):
+        return ""
+    kinds = " or ".join(dict.fromkeys(KINDS[each.kind] for each in averages))
+    if len(averages) > 1:
+        return f"p does not show whether it is {kinds}: ends are known to a spacing or so; tell the kind with --kind"
+    points = f" averaged over {averages[0].count} points" if averages[0].count > 1 else ""
+    return f"read as {kinds}{points}, as the ends of p show: if it is another kind, tell it with --kind"
 
 
 def _points(x: Array, at: Indices) -> tuple[Array, Array, Array]:
