@@ -56,6 +56,9 @@ def add(commands: Commands) -> None:
                         help="auto puts x = 0 in the middle of the contact (default: given)")  # fmt: skip
     scores.add_argument("--order", metavar="1|2", default="1",
                         help="order of the elements, for nodal forces (columns Fn, Ft) (default: 1)")  # fmt: skip
+    scores.add_argument("--kind", choices=("sampled", "mean", "nodal"),
+                        help="what the values are: sampled (at points), mean (over cells) or nodal (forces of linear "
+                        "elements over the nodes' weights) (default: guessed, with a note)")  # fmt: skip
     scores.add_argument("--at", metavar="I,J",
                         help="CalculiX: numbers, from 1, of the contact results at load points 1 and 2 (default: ends "
                         "of the last steps)")  # fmt: skip
@@ -123,6 +126,7 @@ def _score(options: argparse.Namespace) -> int:
             at=(at[0], at[1]) if at else None,
             columns=columns_of(options.columns),
             centre=options.centre,
+            kind=options.kind,
             progress=tell,
         )
         files = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []

@@ -17,6 +17,7 @@ from partialslip.run import Run, compared, run
 from partialslip.scene import Scene
 from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.score.ends import FEWEST
+from partialslip.score.kinds import KINDS, Kind
 from partialslip.score.method import centred, scored
 from partialslip.score.mistakes import in_another_unit, mistakes
 from partialslip.score.read import read_tractions
@@ -35,6 +36,7 @@ def score(
     at: tuple[int, int] | None = None,
     columns: Mapping[str, str] | None = None,
     centre: Literal["given", "auto"] = "given",
+    kind: Kind | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Run:
     """Compare the tractions in ``file`` with the solution of ``scene``. The result in the run has the file's name.
@@ -70,6 +72,9 @@ def score(
         differences: ``{"x": "X", "p": "CPRESS", "dq": "S2-S1"}``.
     centre : "given" or "auto"
         "auto" moves x = 0 to the middle of the contact; not with a moment or an uneven gap.
+    kind : "sampled", "mean" or "nodal", optional
+        What the values are: values at points, means over cells, or nodal forces of linear elements over the nodes'
+        weights. By default guessed, with a note.
     progress : callable
         Called with one line of text at a time.
 
@@ -88,9 +93,11 @@ def score(
         raise InputError(f"reference {reference!r}: must be one of {', '.join(REFERENCES)}")
     if centre not in ("given", "auto"):
         raise InputError(f"centre {centre!r}: must be 'given' or 'auto'")
+    if kind not in (None, *KINDS):
+        raise InputError(f"kind {kind!r}: must be one of {', '.join(KINDS)}")
     if centre == "auto" and not scene.even:
         raise InputError("centre 'auto': must be 'given' with a moment or an uneven gap: the middle is not at x = 0")
-    found = read_tractions(file, scene, factors, order, at, columns)
+    found = read_tractions(file, scene, factors, order, at, columns, kind)
     if centre == "auto":
         found = centred(found, str(file), scene.units)
     result = scored(scene, found, name, str(file))

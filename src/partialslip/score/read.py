@@ -14,6 +14,7 @@ from partialslip.scene import Scene
 from partialslip.score.calculix import LoadPoints, read_dat, read_frd, stated_units
 from partialslip.score.csvfile import Columns, read_csv
 from partialslip.score.headers import COLUMN_DIMENSIONS, SHEAR_COLUMNS
+from partialslip.score.kinds import Kind
 from partialslip.score.samples import Samples, samples
 from partialslip.units import Units
 
@@ -38,6 +39,7 @@ def read_tractions(
     order: int = 1,
     at: tuple[int, int] | None = None,
     chosen: Mapping[str, str] | None = None,
+    kind: Kind | None = None,
 ) -> Samples:
     """Read tractions from ``file``.
 
@@ -85,7 +87,7 @@ def read_tractions(
                 "give both with --columns q1=...,q2=..."
             )
         notes += (f"{columns.made_of}: shear at load point 2, taken as half of its change",)
-    made = samples(columns.values, origin, factors, order)
+    made = samples(columns.values, origin, factors, order, kind)
     if not load.fully_reversed and {"q", "Ft"} & set(columns.values):  # half of the change, but not q at load point 2
         made = replace(made, q1=None, q2=None)
     return replace(made, made_of=columns.made_of, notes=notes)

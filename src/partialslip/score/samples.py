@@ -9,6 +9,7 @@ from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST
 from partialslip.score.headers import FIRST
+from partialslip.score.kinds import Kind, cells_around, cells_of_nodes
 
 _DIGITS = 8  # accuracy: digits of x: numbers with fewer count as rounded
 _WHOLE = 1e-5  # accuracy: of a unit in the last place: deviation from a whole number of units
@@ -29,7 +30,7 @@ class Samples:
     q1, q2 : (n,) arrays or None
         Shear traction at the load points, Pa, if known.
     cells : (n + 1,) array or None
-        Ends of the cells, m, if p and dq are means over cells (nodal forces over widths). None: values at points.
+        Ends of the cells, m, of means over cells and of nodal forces over weights; None for values at points.
     resolution : float
         Standard deviation of x, m, if x is written with few digits; otherwise 0.
     made_of : str
@@ -38,6 +39,10 @@ class Samples:
         Notes for the author of the file.
     p1 : (n,) array or None
         Pressure at load point 1, Pa; None where the pressure does not vary.
+    kind : "sampled", "mean" or "nodal"
+        Values at points, means over cells, or nodal forces of linear elements over the nodes' weights.
+    guessed : bool
+        Whether the kind was guessed, and not given.
     """
 
     x: Array
@@ -50,6 +55,8 @@ class Samples:
     made_of: str = ""
     notes: tuple[str, ...] = ()
     p1: Array | None = None
+    kind: Kind = "sampled"
+    guessed: bool = False
 
     @property
     def p_mean(self) -> Array:
@@ -75,7 +82,9 @@ class Samples:
         return replace(self, **columns, cells=cells)
 
 
-def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float, float], order: int) -> Samples:
+def samples(
+    columns: dict[str, Array], origin: str, factors: tuple[float, float, float], order: int, kind: Kind | None = None
+) -> Samples:
     """Make samples from columns by name.
 
     Parameters
@@ -90,6 +99,8 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
         Factors of x, of the pressures (forces Fn) and of the shear, for other units and signs.
     order : int
         Order of the elements of nodal forces: 1, or 2 with every second node in the middle of an edge.
+    kind : "sampled", "mean" or "nodal", optional
+        What the values are; by default guessed.
 
     Raises
     ------
@@ -115,10 +126,15 @@ def samples(columns: dict[str, Array], origin: str, factors: tuple[float, float,
             raise InputError(f"{origin}: {name} > 0 at {touching} points: must be at least {FEWEST_POINTS}{hint}")
     p, p1, shears = values[1], (values[2] if pressed > 2 else None), values[pressed:]
     if len(shears) == 2:
-        return Samples(x, p, shears[1] - shears[0], shears[0], shears[1], cells, resolution, p1=p1)
-    half = names[pressed] in ("q", "Ft")
-    dq = 2 * shears[0] if half else shears[0]
-    return Samples(x, p, dq, -dq / 2 if half else None, dq / 2 if half else None, cells, resolution, p1=p1)
+        dq, q1, q2 = shears[1] - shears[0], shears[0], shears[1]
+    elif names[pressed] in ("q", "Ft"):
+        dq, q1, q2 = 2 * shears[0], -shears[0], shears[0]
+    else:
+        dq, q1, q2 = shears[0], None, None
+    own: Kind = kind or ("nodal" if normal == "Fn" else "sampled")
+    if normal != "Fn" and own != "sampled":
+        cells = cells_around(x) if own == "mean" else cells_of_nodes(x)
+    return Samples(x, p, dq, q1, q2, cells, resolution, p1=p1, kind=own, guessed=kind is None)
 
 
 def _check(values: Array, names: list[str], origin: str) -> None:
@@ -162,8 +178,7 @@ def _merged(values: Array) -> Array:
 def _cells(x: Array, order: int) -> Array:
     """Ends of the nodes' cells, (n + 1,), m: each as wide as the integral of the node's shape function."""
     if order == 1:
-        inner = (x[1:] + x[:-1]) / 2
-    else:
-        widths = np.diff(x[::2])
-        inner = np.sort(np.concatenate([x[:-1:2] + widths / 6, x[2::2] - widths / 6]))
+        return cells_of_nodes(x)
+    widths = np.diff(x[::2])
+    inner = np.sort(np.concatenate([x[:-1:2] + widths / 6, x[2::2] - widths / 6]))
     return np.concatenate([[x[0]], inner, [x[-1]]])
