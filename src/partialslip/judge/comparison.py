@@ -168,6 +168,8 @@ def compare(
     own, scene = bars or {}, as_scene(scene)
     wanted = asked(accuracy)
     usual = {key: Bar(bar) for key, bar in wanted.bars.items()} if wanted else {}
+    if wanted and scene.friction.f == 0 and wanted.tractions is None:  # q = 0 has no ends whose errors it multiplies
+        usual |= dict.fromkeys(("q", "q1", "q2"), Bar(wanted.contact))
     applied = {key: plus_estimate(bar, key, reference) for key, bar in {**usual, **own}.items()}
     unknown = reference_of(scene).unknown
     every = measures(result, reference, scene, unknown, stresses=stresses)

@@ -8,7 +8,7 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import LEAST_SHEAR
-from partialslip.result import Traction
+from partialslip.result import Traction, TractionAt
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
@@ -29,7 +29,7 @@ def cell_errors(traction: Traction, reference: Traction, f: float = 0.0) -> tupl
 
 
 def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[str, ...]) -> dict[str, float]:
-    """Return relative L2 errors of cell averages by key.
+    """Return relative L2 errors by key: of cell averages, or of the values of a table.
 
     Parameters
     ----------
@@ -42,10 +42,14 @@ def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[s
         to the larger of the norm of the quantity and 1e-3 of f p's norm; without friction, where q = 0, relative to
         the norm of p. Zero if both are zero.
     """
-    cells, every = _cells(traction, reference), ("p", *keys)
-    widths = np.diff(cells)
-    found, true = (means(partial(fields, each, keys=every), cells, each.breaks) for each in (traction, reference))
+    _, widths, found, true = _like_with_like(traction, reference, ("p", *keys))
     off, norms = (np.sqrt(values**2 @ widths) for values in (found - true, true))
+    return relative(off, norms, f, keys)
+
+
+def relative(off: Array, norms: Array, f: float, keys: tuple[str, ...]) -> dict[str, float]:
+    """Return errors by key from norms of errors, ``off``, and of tractions, of p and then of those of the ``keys``;
+    ``f`` and ``keys`` as for :func:`norm_errors`."""
     least = LEAST_SHEAR * f * norms[0] if f else norms[0]
     return {
         key: _ratio(error, norm if key.startswith("p") else max(norm, least))
@@ -53,17 +57,56 @@ def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[s
     }
 
 
-def resultants_over_cells(traction: Traction, keys: tuple[str, ...]) -> dict[str, float]:
-    """Return integrals of p, p_1 or q over all cells of the ``traction``, N/m, by key; ``keys`` names them."""
-    cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
-    sums = means(partial(fields, traction, keys=keys), cells, cells) @ np.diff(cells)
-    return dict(zip(keys, sums.tolist(), strict=True))
+def resultants(traction: Traction, reference: Traction, keys: tuple[str, ...]) -> dict[str, float]:
+    """Return integrals of p, p_1 or q of the ``traction``, N/m, by key; ``keys`` names them. Those of a table are the
+    integrals of the ``reference`` and the sum of the differences from it: what lies between points is in both."""
+    sums = _integrals(traction, reference, keys, lambda x: np.ones_like(x))
+    return dict(zip(keys, sums, strict=True))
 
 
-def moment(traction: Traction, key: str = "p") -> float:
-    """Return the moment int x p dx of the ``traction`` about x = 0, N; ``key`` is p or p_1 (load points 2 and 1)."""
+def moment(traction: Traction, reference: Traction, key: str = "p") -> float:
+    """Return the moment int x p dx of the ``traction`` about x = 0, N; ``key`` is p or p_1 (load points 2 and 1). Of a
+    table as :func:`resultants`."""
+    return _integrals(traction, reference, (key,), lambda x: x)[0]
+
+
+def _integrals(
+    traction: Traction, reference: Traction, keys: tuple[str, ...], arm: Callable[[Array], Array]
+) -> list[float]:
+    """Integrals of ``arm(x)`` times the tractions with these ``keys``, over all cells."""
+    off: Array | float = 0.0
+    if traction.observed:
+        x, widths, found, true = _like_with_like(traction, reference, keys)
+        off, traction = (found - true) @ (arm(x) * widths), reference
     cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
-    return float(means(lambda x: x * fields(traction, x, (key,))[0], cells, cells) @ np.diff(cells))
+    whole = means(lambda x: arm(x) * fields(traction, x, keys), cells, cells) @ np.diff(cells)
+    return (whole + off).tolist()
+
+
+def _like_with_like(
+    traction: Traction, reference: Traction, keys: tuple[str, ...]
+) -> tuple[Array, Array, Array, Array]:
+    """Return places (n,) and widths (n,), m, and there the values of ``traction`` and ``reference`` by ``keys``,
+    (keys, n): averages over cells that cover the reference's contact; of a table its own values and those that it would
+    have of the reference, and averages over the parts of the reference's contact for which no value stands."""
+    own, true = (partial(fields, each, keys=keys) for each in (traction, reference))
+    if traction.observed is None:
+        cells = _cells(traction, reference)
+        found, wanted = (means(of, cells, each.breaks) for of, each in ((own, traction), (true, reference)))
+        return (cells[1:] + cells[:-1]) / 2, np.diff(cells), found, wanted
+    (starts, ends), of = traction.observed.cells.T, traction.observed.of
+    places, widths = traction.x, ends - starts
+    found, wanted = _by_key(traction.values, keys), of(true, reference.breaks)
+    # from the end of each part to the start of the next, within the reference's contact
+    contact = reference.breaks.min(), reference.breaks.max()
+    left, right = np.clip(np.stack([np.append(contact[0], ends), np.append(starts, contact[1])]), *contact)
+    if (bare := right > left).any():
+        cells = np.stack([left[bare], right[bare]], axis=1).ravel()
+        between = (means(of, cells, each.breaks)[..., ::2] for of, each in ((own, traction), (true, reference)))
+        found, wanted = (np.concatenate(pair, axis=-1) for pair in zip((found, wanted), between, strict=True))
+        places = np.append(places, (left + right)[bare] / 2)
+        widths = np.append(widths, (right - left)[bare])
+    return places, widths, found, wanted
 
 
 def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
@@ -71,7 +114,10 @@ def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
 
     ``keys`` are p and p_1 (pressure at load points 2 and 1), q = dq/2, and q1 and q2, if the ``traction`` has them.
     """
-    found = traction.at(x)
+    return _by_key(traction.at(x), keys)
+
+
+def _by_key(found: TractionAt, keys: tuple[str, ...]) -> Array:
     known = {"p_1": found.pressures[0], "p": found.p, "q": found.dq / 2, "q1": found.q1, "q2": found.q2}
     return np.array([known[key] for key in keys])
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.judge.means import means, moment, norm_errors, resultants_over_cells
+from partialslip.judge.means import means, moment, norm_errors, resultants
 from partialslip.result import Result, Traction
 from partialslip.scene import Scene
 
@@ -99,15 +99,15 @@ def _measured(result: Result, reference: Result, scene: Scene, stresses: bool) -
     pressures = ("p",) if of.p1 is None and to.p1 is None else ("p_1", "p")
     levels = ("q1", "q2") if of.values.levels and to.values.levels else ()
     errors = norm_errors(of, to, f, (*pressures, "q", *levels))
-    sums = resultants_over_cells(of, (*pressures, "q"))
+    sums = resultants(of, to, (*pressures, "q"))
     applied = dict(zip(("p_1", "p"), scene.end_pressing, strict=True))
     for key in pressures:
         yield _apart(key.replace("p", "P"), "P", applied[key].P / scene.P, sums[key] / scene.P)
         yield key, NORM, None, None, errors[key]
     for key in () if scene.even else pressures:
         M = applied[key].M
-        known = moment(to, key) if M is None else M
-        yield _apart(key.replace("p", "M"), "P a", *(each / (scene.P * a) for each in (known, moment(of, key))))
+        known = moment(to, to, key) if M is None else M
+        yield _apart(key.replace("p", "M"), "P a", *(each / (scene.P * a) for each in (known, moment(of, to, key))))
     yield _apart("p_max", "p0", to.p_max / p0, of.p_max / p0)
     limit = f * scene.P
     yield _apart("dQ", "2 f P", *((half / limit if limit else math.nan) for half in (scene.load.dQ / 2, sums["q"])))

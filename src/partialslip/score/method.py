@@ -22,6 +22,7 @@ from partialslip.score.ends import (
     zone_around_peak,
 )
 from partialslip.score.friction import FrictionRead, frictions
+from partialslip.score.observed import observed
 from partialslip.score.samples import FEWEST_POINTS, Samples
 from partialslip.units import Units
 
@@ -299,9 +300,10 @@ def _traction(samples: Samples, ends: list[float], in_phase: bool) -> Traction:
     levels = (samples.q1, samples.q2) if in_phase else (None, None)
     values = TractionAt(samples.p, samples.dq, *levels, samples.p1)
     if cells is not None:
-        return Traction(x, values, Sampled(cells, values).at, cells, cells)
+        return Traction(x, values, Sampled(cells, values).at, cells, cells, observed(samples))
     breaks = np.union1d(x, [end for end in (min(ends), max(ends)) if not x[0] <= end <= x[-1]])
-    return Traction(x, values, Sampled(breaks, Sampled(x, values).at(breaks)).at, breaks, breaks)
+    at = Sampled(breaks, Sampled(x, values).at(breaks)).at
+    return Traction(x, values, at, breaks, breaks, observed(samples))
 
 
 def _rounded(number: float) -> float:

@@ -10,6 +10,7 @@ from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST
 from partialslip.score.headers import FIRST
 from partialslip.score.kinds import Kind, cells_around, cells_of_nodes
+from partialslip.score.rows import check_equal_x, starts
 
 _DIGITS = 8  # accuracy: digits of x: numbers with fewer count as rounded
 _WHOLE = 1e-5  # accuracy: of a unit in the last place: deviation from a whole number of units
@@ -43,6 +44,8 @@ class Samples:
         Values at points, means over cells, or nodal forces of linear elements over the nodes' weights.
     guessed : bool
         Whether the kind was guessed, and not given.
+    order : int
+        Order of the elements of nodal forces.
     """
 
     x: Array
@@ -57,6 +60,7 @@ class Samples:
     p1: Array | None = None
     kind: Kind = "sampled"
     guessed: bool = False
+    order: int = 1
 
     @property
     def p_mean(self) -> Array:
@@ -112,6 +116,7 @@ def samples(
     sizes = [factors[0], *[factors[1]] * (pressed - 1), *[factors[2]] * (len(names) - pressed)]
     values = np.stack([column * size for column, size in zip(columns.values(), sizes, strict=True)])
     _check(values, names, origin)
+    notes = check_equal_x(dict(zip(names, values, strict=True)), (), origin, "")
     values = _merged(values)
     x, cells, resolution = values[0], None, abs(factors[0]) * _resolution(columns["x"])
     if normal == "Fn":
@@ -134,7 +139,7 @@ def samples(
     own: Kind = kind or ("nodal" if normal == "Fn" else "sampled")
     if normal != "Fn" and own != "sampled":
         cells = cells_around(x) if own == "mean" else cells_of_nodes(x)
-    return Samples(x, p, dq, q1, q2, cells, resolution, p1=p1, kind=own, guessed=kind is None)
+    return Samples(x, p, dq, q1, q2, cells, resolution, "", notes, p1, own, kind is None, order)
 
 
 def _check(values: Array, names: list[str], origin: str) -> None:
@@ -167,11 +172,9 @@ def _resolution(x: Array) -> float:
 def _merged(values: Array) -> Array:
     """Sort the columns of ``values`` by the first row and average columns with equal first entries, to rounding."""
     values = values[:, np.argsort(values[0], kind="stable")]
-    x = values[0]
-    new = np.concatenate([[True], np.diff(x) > 1e-7 * np.ptp(x)]) if len(x) else np.zeros(0, bool)
-    if not new.any():
+    first = starts(x := values[0])
+    if not len(first):
         return values
-    first = np.flatnonzero(new)
     return np.add.reduceat(values, first, axis=1) / np.diff(np.append(first, len(x)))
 
 
