@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,6 +29,60 @@ def cell_errors(traction: Traction, reference: Traction, f: float = 0.0) -> tupl
     return errors["p"], errors["q"]
 
 
+class Pair(NamedTuple):
+    """Values of a traction and of its reference, like with like.
+
+    Parameters
+    ----------
+    keys : tuple of str
+        Quantities, as for :func:`fields`; the first is p.
+    places, widths : (n,) arrays
+        Of the cells, m.
+    found, true : (keys, n) arrays
+        Averages over cells that cover the reference's contact. Of a table its own values and those that it would have
+        of the reference, and averages over the parts of the reference's contact for which no value stands.
+    """
+
+    keys: tuple[str, ...]
+    places: Array
+    widths: Array
+    found: Array
+    true: Array
+
+    def errors(self, f: float) -> dict[str, float]:
+        """Relative L2 errors by key (:func:`norm_errors`)."""
+        off, norms = (np.sqrt(values**2 @ self.widths) for values in (self.found - self.true, self.true))
+        return relative(off, norms, f, self.keys)
+
+    def off(self, arm: int = 0) -> dict[str, float]:
+        """Integrals of the differences by key, times x to the power ``arm``."""
+        sums = (self.found - self.true) @ (self.widths * self.places**arm)
+        return dict(zip(self.keys, sums.tolist(), strict=True))
+
+
+def paired(traction: Traction, reference: Traction, keys: tuple[str, ...]) -> Pair:
+    """Return the values of ``traction`` and ``reference`` for the ``keys`` and, first, for p."""
+    keys = tuple(dict.fromkeys(("p", *keys)))
+    own, true = (partial(fields, each, keys=keys) for each in (traction, reference))
+    if traction.observed is None:
+        cells = _cells(traction, reference)
+        averages = (means(of, cells, each.breaks) for of, each in ((own, traction), (true, reference)))
+        return Pair(keys, (cells[1:] + cells[:-1]) / 2, np.diff(cells), *averages)
+    (starts, ends), of = traction.observed.cells.T, traction.observed.of
+    places, widths = traction.x, ends - starts
+    found, wanted = _by_key(traction.values, keys), of(true, reference.breaks)
+    # from the end of each part to the start of the next, within the reference's contact
+    contact = reference.breaks.min(), reference.breaks.max()
+    left, right = np.clip(np.stack([np.append(contact[0], ends), np.append(starts, contact[1])]), *contact)
+    if (bare := right > left).any():
+        cells = np.stack([left[bare], right[bare]], axis=1).ravel()
+        between = (means(of, cells, each.breaks)[..., ::2] for of, each in ((own, traction), (true, reference)))
+        found, wanted = (np.concatenate(pair, axis=-1) for pair in zip((found, wanted), between, strict=True))
+        places = np.append(places, (left + right)[bare] / 2)
+        widths = np.append(widths, (right - left)[bare])
+    return Pair(keys, places, widths, found, wanted)
+
+
 def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[str, ...]) -> dict[str, float]:
     """Return relative L2 errors by key: of cell averages, or of the values of a table.
 
@@ -42,71 +97,25 @@ def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[s
         to the larger of the norm of the quantity and 1e-3 of f p's norm; without friction, where q = 0, relative to
         the norm of p. Zero if both are zero.
     """
-    _, widths, found, true = _like_with_like(traction, reference, ("p", *keys))
-    off, norms = (np.sqrt(values**2 @ widths) for values in (found - true, true))
-    return relative(off, norms, f, keys)
+    errors = paired(traction, reference, keys).errors(f)
+    return {key: errors[key] for key in keys}
 
 
 def relative(off: Array, norms: Array, f: float, keys: tuple[str, ...]) -> dict[str, float]:
-    """Return errors by key from norms of errors, ``off``, and of tractions, of p and then of those of the ``keys``;
-    ``f`` and ``keys`` as for :func:`norm_errors`."""
+    """Return errors by key from norms of errors, ``off``, and of tractions, (keys,), first of p; ``f`` and ``keys`` as
+    for :func:`norm_errors`."""
     least = LEAST_SHEAR * f * norms[0] if f else norms[0]
     return {
         key: _ratio(error, norm if key.startswith("p") else max(norm, least))
-        for key, error, norm in zip(keys, off[1:].tolist(), norms[1:].tolist(), strict=True)
+        for key, error, norm in zip(keys, off.tolist(), norms.tolist(), strict=True)
     }
 
 
-def resultants(traction: Traction, reference: Traction, keys: tuple[str, ...]) -> dict[str, float]:
-    """Return integrals of p, p_1 or q of the ``traction``, N/m, by key; ``keys`` names them. Those of a table are the
-    integrals of the ``reference`` and the sum of the differences from it: what lies between points is in both."""
-    sums = _integrals(traction, reference, keys, lambda x: np.ones_like(x))
-    return dict(zip(keys, sums, strict=True))
-
-
-def moment(traction: Traction, reference: Traction, key: str = "p") -> float:
-    """Return the moment int x p dx of the ``traction`` about x = 0, N; ``key`` is p or p_1 (load points 2 and 1). Of a
-    table as :func:`resultants`."""
-    return _integrals(traction, reference, (key,), lambda x: x)[0]
-
-
-def _integrals(
-    traction: Traction, reference: Traction, keys: tuple[str, ...], arm: Callable[[Array], Array]
-) -> list[float]:
-    """Integrals of ``arm(x)`` times the tractions with these ``keys``, over all cells."""
-    off: Array | float = 0.0
-    if traction.observed:
-        x, widths, found, true = _like_with_like(traction, reference, keys)
-        off, traction = (found - true) @ (arm(x) * widths), reference
+def integrals(traction: Traction, keys: tuple[str, ...], arm: int = 0) -> dict[str, float]:
+    """Return integrals of p, p_1 or q times x to the power ``arm`` over all cells, N/m or N; ``keys`` names them."""
     cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
-    whole = means(lambda x: arm(x) * fields(traction, x, keys), cells, cells) @ np.diff(cells)
-    return (whole + off).tolist()
-
-
-def _like_with_like(
-    traction: Traction, reference: Traction, keys: tuple[str, ...]
-) -> tuple[Array, Array, Array, Array]:
-    """Return places (n,) and widths (n,), m, and there the values of ``traction`` and ``reference`` by ``keys``,
-    (keys, n): averages over cells that cover the reference's contact; of a table its own values and those that it would
-    have of the reference, and averages over the parts of the reference's contact for which no value stands."""
-    own, true = (partial(fields, each, keys=keys) for each in (traction, reference))
-    if traction.observed is None:
-        cells = _cells(traction, reference)
-        found, wanted = (means(of, cells, each.breaks) for of, each in ((own, traction), (true, reference)))
-        return (cells[1:] + cells[:-1]) / 2, np.diff(cells), found, wanted
-    (starts, ends), of = traction.observed.cells.T, traction.observed.of
-    places, widths = traction.x, ends - starts
-    found, wanted = _by_key(traction.values, keys), of(true, reference.breaks)
-    # from the end of each part to the start of the next, within the reference's contact
-    contact = reference.breaks.min(), reference.breaks.max()
-    left, right = np.clip(np.stack([np.append(contact[0], ends), np.append(starts, contact[1])]), *contact)
-    if (bare := right > left).any():
-        cells = np.stack([left[bare], right[bare]], axis=1).ravel()
-        between = (means(of, cells, each.breaks)[..., ::2] for of, each in ((own, traction), (true, reference)))
-        found, wanted = (np.concatenate(pair, axis=-1) for pair in zip((found, wanted), between, strict=True))
-        places = np.append(places, (left + right)[bare] / 2)
-        widths = np.append(widths, (right - left)[bare])
-    return places, widths, found, wanted
+    sums = means(lambda x: x**arm * fields(traction, x, keys), cells, cells) @ np.diff(cells)
+    return dict(zip(keys, sums.tolist(), strict=True))
 
 
 def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:

@@ -149,4 +149,5 @@ def number(value: float | None) -> JsonNumber:
 
 def numbers(values: Array) -> Numbers:
     """Return ``values`` (n,) with None in place of NaN and infinity."""
-    return tuple(each if known else None for each, known in zip(values.tolist(), np.isfinite(values), strict=True))
+    plain, finite = values.tolist(), np.isfinite(values)
+    return tuple(plain if finite.all() else (each if known else None for each, known in zip(plain, finite, strict=True)))

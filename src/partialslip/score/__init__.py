@@ -11,6 +11,7 @@ import numpy as np
 from partialslip.bars import LARGEST, Accuracy, asked
 from partialslip.errors import InputError
 from partialslip.judge import reference as references
+from partialslip.judge.measures import levels_of, pressures_of
 from partialslip.methods import REFERENCES
 from partialslip.result import Result
 from partialslip.run import Run, compared, run
@@ -166,9 +167,7 @@ def _too_far_apart(scene: Scene, result: Result, reference: Result) -> Result:
     that is more than the largest bar, nor one within which
     hardly a point lies."""
     of, to = result.traction, reference.traction
-    pressures = ("p",) if of.p1 is None and to.p1 is None else ("p_1", "p")
-    levels = ("q1", "q2") if of.values.levels and to.values.levels else ()
-    hides = hidden(of, to, scene.friction.f, (*pressures, "q", *levels))
+    hides = hidden(of.x, to, scene.friction.f, (*pressures_of(of, to), "q", *levels_of(of, to)))
     unseen = {key: f"points are too far apart: {off:.1g} of it lies between them" for key, off in hides.items()
               if off > LARGEST}  # fmt: skip
     left, right = to.breaks.min(), to.breaks.max()

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.judge.means import fields, resultants
+from partialslip.judge.means import fields, integrals
 from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.units import UNITS, Dimension
@@ -105,8 +105,7 @@ def at_one_load_point(scene: Scene, result: Result) -> str:
 def _sum_of_dq(scene: Scene, reference: Result) -> float:
     """The sum of dq that is expected, N/m: dQ. Out of phase dq is the range of q at each point, and that of the
     ``reference`` counts."""
-    of = reference.traction
-    return scene.load.dQ if scene.load.in_phase else 2 * resultants(of, of, ("q",))["q"]
+    return scene.load.dQ if scene.load.in_phase else 2 * integrals(reference.traction, ("q",))["q"]
 
 
 def _pulls(scene: Scene, result: Result, reference: Result) -> list[str]:

@@ -25,24 +25,20 @@ def observed(samples: Samples) -> Observed:
     return Observed(np.stack([cells[:-1], cells[1:]], axis=1), partial(_over_weights, x, samples.order))
 
 
-def hidden(traction: Traction, reference: Traction, f: float, keys: tuple[str, ...]) -> dict[str, float]:
-    """Return how much of the ``reference`` the spacing of the table ``traction`` hides, by key, in the norms of
-    :func:`partialslip.judge.means.norm_errors`: how far lines between the values that it would have are off.
+def hidden(x: Array, reference: Traction, f: float, keys: tuple[str, ...]) -> dict[str, float]:
+    """Return how much of the ``reference`` the spacing of points ``x`` hides, by key, in the norms of
+    :func:`partialslip.judge.means.norm_errors`: how far lines between its values there are off.
 
     ``f`` and ``keys`` as there.
     """
-    assert traction.observed
-    x, every = traction.x, ("p", *keys)
-    true = partial(fields, reference, keys=every)
-    values = traction.observed.of(true, reference.breaks)
+    true = partial(fields, reference, keys=("p", *keys))
     some = np.arange(0, len(x) - 1, -(-len(x) // _GAPS))
-    gaps = np.diff(x)[some]
-    lines = [(1 - share) * values[:, some] + share * values[:, some + 1] for share in _SHARES]
-    off = np.max([np.abs(line - true(x[some] + share * gaps)) for line, share in zip(lines, _SHARES, strict=True)], 0)
-    lost = np.sqrt(off**2 @ gaps * ((x[-1] - x[0]) / gaps.sum()))
+    gaps, (left, right) = np.diff(x)[some], (true(x[some]), true(x[some + 1]))
+    off = [np.abs((1 - share) * left + share * right - true(x[some] + share * gaps)) for share in _SHARES]
+    lost = np.sqrt(np.max(off, axis=0) ** 2 @ gaps * ((x[-1] - x[0]) / gaps.sum()))
     cells = np.unique(np.concatenate([reference.breaks, [] if reference.cells is None else reference.cells]))
     norms = np.sqrt(means(lambda at: true(at) ** 2, cells, cells) @ np.diff(cells))
-    return relative(lost, norms, f, keys)
+    return relative(lost, norms, f, ("p", *keys))
 
 
 def _around(x: Array) -> Array:
