@@ -49,6 +49,7 @@ def test_a_perfect_table_of_points_is_perfect(count, tmp_path):
     found, comparison = compared(SCENE, written(tmp_path / "t.csv", sampled(count)), kind="sampled")
     assert max(comparison.errors[key] for key in ("p", "q", "P", "dQ")) < 1e-10
     assert 0.1 / count < found.settings["spacing_hides_p"] < 3 / count
+    assert found.settings["noise_over_p0"] < 1e-4  # and hardly any of it is noise
 
 
 @pytest.mark.parametrize("order", [1, 2])

@@ -131,7 +131,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         settings={
             "read": "means over cells" if cells else "values at points",
             "spacing_over_a": _rounded(spacing),
-            "noise_over_p0": _rounded(noise_level(p[inside], x[inside]) / p0),
+            "noise_over_p0": _rounded(_noise(p[inside], x[inside]) / p0),
             **(_friction(stick.sides, f) if stick else {}),
             **({"columns": samples.made_of} if samples.made_of else {}),
         },
@@ -304,6 +304,17 @@ def _traction(samples: Samples, ends: list[float], in_phase: bool) -> Traction:
     breaks = np.union1d(x, [end for end in (min(ends), max(ends)) if not x[0] <= end <= x[-1]])
     at = Sampled(breaks, Sampled(x, values).at(breaks)).at
     return Traction(x, values, at, breaks, breaks, observed(samples))
+
+
+def _noise(values: Array, x: Array) -> float:
+    """Standard deviation of the noise in ``values`` at ``x``, (n,) each, n > 4: from the deviations of points from the
+    cubic through the two points on either side, so that what is left of the spacing is small."""
+    count = len(x) - 4
+    at = np.stack([x[shift : shift + count] for shift in (0, 1, 3, 4)]) - x[2:-2]
+    weights = np.stack([np.prod([at[k] / (at[k] - at[j]) for k in range(4) if k != j], axis=0) for j in range(4)])
+    around = np.stack([values[shift : shift + count] for shift in (0, 1, 3, 4)])
+    off = (values[2:-2] - (weights * around).sum(axis=0)) / np.sqrt(1 + (weights**2).sum(axis=0))
+    return float(1.4826 * np.median(np.abs(off)))
 
 
 def _rounded(number: float) -> float:
