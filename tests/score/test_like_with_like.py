@@ -161,7 +161,7 @@ def test_half_of_a_contact_is_not_to_be_centred(tmp_path):
     half = x >= 0
     notes = " ".join(compared(SCENE, written(tmp_path / "t.csv", (x[half], p[half], dq[half])))[0].notes)
     assert "the table begins at x = " in notes
-    assert "within the contact: give the other part, too" in notes
+    assert "within the contact: give all of it, as shear differs from side to side" in notes
     assert "--centre" not in notes
     away = written(tmp_path / "t.csv", (x + 3 * EXACT.a, p, dq))
     assert "--centre auto puts x = 0 there" in " ".join(compared(SCENE, away)[0].notes)
@@ -179,6 +179,21 @@ def test_the_shear_at_one_load_point_is_recognised(name, tmp_path):
     assert f"{name} adds up to Q at load point 2" in found["t.csv"].notes[0]
     both = written(tmp_path / "t.csv", (march.x, march.p, march.q1, march.q2), "x,p,q1,q2")
     assert not compared(scene, both)[0].notes
+
+
+def test_a_contact_that_sticks_nearly_everywhere_is_not_taken_for_a_sliding_one(tmp_path):
+    """Slip zones of 1.6e-4 a lie between two points: no f is read, and neither m, n nor the regime is told."""
+    scene = load_scene("hertz-shear", ["load.Q=[-100, 100]"])
+    found = score(scene, written(tmp_path / "t.csv", sampled(161, run(scene, ["exact"])["exact"])), bar=1e-3)
+    assert found.outcome is Outcome.NOT_JUDGED
+    assert {"m", "n"} <= set(found.conclusion.unjudged)
+
+
+def test_a_contact_that_slides_need_not_bear_dQ(tmp_path):
+    scene = load_scene("hertz-shear", ["load.Q=[-4e5, 4e5]"])
+    found = score(scene, written(tmp_path / "t.csv", sampled(161, run(scene, ["exact"])["exact"])), bar=1e-2)
+    assert not found["t.csv"].notes
+    assert found.passed
 
 
 def stacked(path, label, factor):

@@ -11,7 +11,7 @@ from partialslip.judge.means import Pair
 from partialslip.judge.measures import measures, pair_of
 from partialslip.judge.outcome import Conclusion, conclude
 from partialslip.judge.reference import reference as reference_of
-from partialslip.judge.verdict import Bar, Outcome, Verdict, conditions, decide, judge_regime, plus_estimate
+from partialslip.judge.verdict import READ, Bar, Outcome, Verdict, conditions, decide, judge_regime, plus_estimate
 from partialslip.result import Result
 from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.shown import Notebook
@@ -177,7 +177,8 @@ def compare(
     every = measures(result, reference, scene, unknown, stresses=stresses, pair=pair)
     verdicts = [decide(each, applied.get(each.quantity), result) for each in every]
     nodal = _nodal_errors(result, reference, pair, scene.friction.f)
-    regime = judge_regime(result, reference, scene, applied, unknown)
+    untold = result.undetermined if READ in result.settings else {}  # a table without ends does not tell the regime
+    regime = judge_regime(result, reference, scene, applied, {**unknown, **untold})
     return Comparison((*verdicts, regime), conditions(result), *nodal)
 
 

@@ -119,10 +119,12 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     uncertain = ends is not None and max(uncertainty["m"], uncertainty["n"]) > max(_CERTAIN, _SPACINGS * spacing)
     known = None if uncertain else ends
     why = _why(stick, uncertainty) if uncertain else ""
+    if slips and stick is None and not _tells_sliding(bound[inside], dq[inside], f):
+        why = "no slip zone is found from which f could be read, and so no stick zone"
     notes = samples.notes
     if why:
         notes += (f"m and n are not given: {why}",)
-    if regime == "sliding" and not scene.slides:
+    if regime == "sliding" and not scene.slides and not why:
         notes += ("no stick zone found: |dq|/(2 p) is the same everywhere, within the uncertainty of the points",)
     centre, half_width = ((known[0].x + known[1].x) / 2, (known[1].x - known[0].x) / 2) if known else (None, None)
     traction = _traction(samples, [end for contact in contacts for end in contact.ends], scene.load.in_phase)
@@ -182,6 +184,11 @@ def _why(stick: SeenStickZone | None, uncertainty: dict[str, float]) -> str:
     known = f"they are known to {uncertainty['m']:.1g} and {uncertainty['n']:.1g} a only"
     unseen = stick is not None and not any(side.seen for side in stick.sides)
     return f"|dq|/(2 p) is constant nowhere, so that no slip zone is found; {known}" if unseen else known
+
+
+def _tells_sliding(p: Array, dq: Array, asked: float) -> bool:
+    """Whether \\|dq\\|/(2 p) is known well enough to tell a contact that slides from one that does not."""
+    return max(side.uncertainty for side in frictions(p, dq, asked)) * _F_SIGMAS <= _SLIDES * asked
 
 
 def _friction(sides: tuple[FrictionRead, FrictionRead], asked: float) -> dict[str, str | float]:

@@ -103,9 +103,10 @@ def at_one_load_point(scene: Scene, result: Result) -> str:
 
 
 def _sum_of_dq(scene: Scene, reference: Result) -> float:
-    """The sum of dq that is expected, N/m: dQ. Out of phase dq is the range of q at each point, and that of the
-    ``reference`` counts."""
-    return scene.load.dQ if scene.load.in_phase else 2 * integrals(reference.traction, ("q",))["q"]
+    """The sum of dq that is expected, N/m: dQ. That of the ``reference`` counts out of phase, where dq is the range of
+    q at each point, and where the contact cannot bear dQ."""
+    bears = scene.load.in_phase and reference.regime not in ("sliding", "ratchets")
+    return scene.load.dQ if bears else 2 * integrals(reference.traction, ("q",))["q"]
 
 
 def _pulls(scene: Scene, result: Result, reference: Result) -> list[str]:
@@ -171,7 +172,8 @@ def _cut(scene: Scene, result: Result, reference: Result) -> str:
     for word, x, p, end, way in sides:
         if way * (2 * x[0] - x[1] - end) > 0 and p[0] > max(p[1], 0.0) / np.sqrt(2):
             place = scene.units.labelled(float(x[0]), "m", 4)
-            return f"the table {word} at x = {place}, within the contact: give the other part, too, with its own shear"
+            advice = "give all of it, as shear differs from side to side"
+            return f"the table {word} at x = {place}, within the contact: {advice}"
     return ""
 
 

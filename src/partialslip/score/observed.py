@@ -20,9 +20,11 @@ def observed(samples: Samples) -> Observed:
     x, cells = samples.x, samples.cells
     if samples.kind == "sampled" or cells is None:
         return Observed(_around(x), partial(_sampled, x))
-    if samples.kind == "mean":
-        return Observed(np.stack([cells[:-1], cells[1:]], axis=1), partial(_means, cells))
-    return Observed(np.stack([cells[:-1], cells[1:]], axis=1), partial(_over_weights, x, samples.order))
+    parts = np.stack([cells[:-1], cells[1:]], axis=1)
+    if samples.kind == "nodal":
+        return Observed(parts, partial(_over_weights, x, samples.order))
+    parts[0, 0], parts[-1, 1] = min(cells[0], 2 * x[0] - x[1]), max(cells[-1], 2 * x[-1] - x[-2])
+    return Observed(parts, partial(_means, cells))
 
 
 def hidden(x: Array, reference: Traction, f: float, keys: tuple[str, ...]) -> dict[str, float]:
