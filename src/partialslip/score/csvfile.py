@@ -71,11 +71,11 @@ def read_csv(
     if chosen:
         wanted = selected(names, chosen, origin, anew)
     else:  # a column without values is none
-        filled = [not table.rows or not all(map(_no_value, table.column(k))) for k in range(len(names))]
+        filled = [not table.lines or not all(map(_no_value, table.column(k))) for k in range(len(names))]
         wanted = known([name if some else "" for name, some in zip(names, filled, strict=True)], origin, anew)
     used = sorted({each for column in wanted.values() for each in column.parts})
     kept = np.flatnonzero(~np.any([_empty(table.column(k)) for k in used], axis=0))
-    left_out = len(table.rows) - len(kept)
+    left_out = len(table.lines) - len(kept)
     if left_out:
         table = table.only(kept.tolist())
     numbers = {k: _numbers(table.column(k), table.lines, names[k], origin) for k in used}
@@ -92,11 +92,11 @@ def read_csv(
 
 
 class _Table(NamedTuple):
-    """Fields of a table: ``names`` of the columns, ``rows``, the ``lines`` of the file in which they are, and the line
+    """Fields of a table: ``names`` of the ``columns``, the ``lines`` of the file in which its rows are, and the line
     with the header, ``head``. The ``separator`` is empty for blanks; ``plain`` fields are numbers as they stand."""
 
     names: list[str]
-    rows: list[list[str]]
+    columns: list[list[str]]
     lines: list[int]
     head: int
     separator: str
@@ -104,41 +104,43 @@ class _Table(NamedTuple):
 
     def column(self, k: int) -> list[str]:
         """Fields of column ``k``."""
-        fields = [row[k] for row in self.rows]
-        return fields if self.plain else [_field(field, self.separator) for field in fields]
+        return self.columns[k] if self.plain else [_field(field, self.separator) for field in self.columns[k]]
 
     def only(self, kept: list[int]) -> "_Table":
         """The table with the ``kept`` rows alone."""
-        return self._replace(rows=[self.rows[row] for row in kept], lines=[self.lines[row] for row in kept])
+        columns = [[column[row] for row in kept] for column in self.columns]
+        return self._replace(columns=columns, lines=[self.lines[row] for row in kept])
 
 
 def _table(text: str, origin: str, headless: bool) -> _Table:
     """Split ``text`` into fields; a table without a header line is allowed if ``headless``."""
-    every = enumerate(text.splitlines(), start=1)
-    lines = [(number, line) for number, line in every if line.partition("#")[0].strip()]
-    if not lines:
-        raise InputError(f"{origin}: empty: must have a header line with x, p and dq")
-    numbers, bare = map(list, zip(*lines, strict=True))
+    bare = text.splitlines()
     if "#" in text:
         bare = [line.partition("#")[0] for line in bare]
-    first = bare[0].strip(" \r")
+    numbers = [number for number, line in enumerate(bare, start=1) if line and not line.isspace()]
+    if not numbers:
+        raise InputError(f"{origin}: empty: must have a header line with x, p and dq")
+    bare = [bare[number - 1] for number in numbers]
+    first, head = bare[0].strip(" \r"), numbers[0]
     separator = max(",;\t", key=first.count)
     separator = separator if separator in first else ""
-    rows, head = [line.split(separator or None) for line in bare], numbers[0]
-    fields = [_field(field, separator) for field in rows[0]]
+    fields = [_field(field, separator) for field in first.split(separator or None)]
     if all(map(_is_number, fields)):
         if not headless:
             raise InputError(f"{origin}: line {head}: must be a header line with x, p and dq; or give --columns")
         names = [str(k + 1) for k in range(len(fields))]
     else:
         names = fields if separator else headings(first)
-        rows, numbers = rows[1:], numbers[1:]
-    if len(rows) > _MOST_ROWS:
-        raise InputError(f"{origin}: {len(rows)} rows: must be at most {_MOST_ROWS}")
-    if short := next((n for n, row in zip(numbers, rows, strict=True) if len(row) != len(names)), None):
-        raise InputError(f"{origin}: line {short}: must have {len(names)} fields, like the header line")
+        bare, numbers = bare[1:], numbers[1:]
+    if len(bare) > _MOST_ROWS:
+        raise InputError(f"{origin}: {len(bare)} rows: must be at most {_MOST_ROWS}")
+    width = len(names)
+    counts = (line.count(separator) + 1 if separator else len(line.split()) for line in bare)
+    if short := next((n for n, count in zip(numbers, counts, strict=True) if count != width), None):
+        raise InputError(f"{origin}: line {short}: must have {width} fields, like the header line")
+    every = (separator or " ").join(bare).split(separator or None) if bare else []  # a list a row would take far longer
     plain = '"' not in text and (separator == "," or "," not in text)
-    return _Table(names, rows, numbers, head, separator, plain)
+    return _Table(names, [every[k::width] for k in range(width)], numbers, head, separator, plain)
 
 
 def _check_single(table: _Table, used: list[int], values: Mapping[str, Array], origin: str) -> None:
