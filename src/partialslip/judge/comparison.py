@@ -7,10 +7,11 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import Accuracy, asked
-from partialslip.judge.measures import measures
+from partialslip.judge.means import Pair
+from partialslip.judge.measures import measures, pair_of
 from partialslip.judge.outcome import Conclusion, conclude
 from partialslip.judge.reference import reference as reference_of
-from partialslip.judge.verdict import Bar, Outcome, Verdict, conditions, decide, judge_regime, plus_estimate
+from partialslip.judge.verdict import READ, Bar, Outcome, Verdict, conditions, decide, judge_regime, plus_estimate
 from partialslip.result import Result
 from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.shown import Notebook
@@ -168,22 +169,29 @@ def compare(
     own, scene = bars or {}, as_scene(scene)
     wanted = asked(accuracy)
     usual = {key: Bar(bar) for key, bar in wanted.bars.items()} if wanted else {}
+    if wanted and scene.friction.f == 0 and wanted.tractions is None:  # q = 0 has no ends whose errors it multiplies
+        usual |= dict.fromkeys(("q", "q1", "q2"), Bar(wanted.contact))
     applied = {key: plus_estimate(bar, key, reference) for key, bar in {**usual, **own}.items()}
     unknown = reference_of(scene).unknown
-    every = measures(result, reference, scene, unknown, stresses=stresses)
+    pair = pair_of(result, reference)
+    every = measures(result, reference, scene, unknown, stresses=stresses, pair=pair)
     verdicts = [decide(each, applied.get(each.quantity), result) for each in every]
-    nodal = _nodal_errors(result, reference, scene.friction.f)
-    regime = judge_regime(result, reference, scene, applied, unknown)
+    nodal = _nodal_errors(result, reference, pair, scene.friction.f)
+    untold = result.undetermined if READ in result.settings else {}  # a table without ends does not tell the regime
+    regime = judge_regime(result, reference, scene, applied, {**unknown, **untold})
     return Comparison((*verdicts, regime), conditions(result), *nodal)
 
 
 def _nodal_errors(
-    result: Result, reference: Result, f: float
+    result: Result, reference: Result, pair: Pair, f: float
 ) -> tuple[float | None, float | None, float, float | None]:
     """Return relative L2 errors of nodal p and q, and the largest nodal errors, in p0 and f p0."""
     x = result.traction.x
-    true = reference.traction.at(x)
-    p, dq = true.p, true.dq
+    if result.traction.observed:
+        true = dict(zip(pair.keys, pair.true[:, : len(x)], strict=True))
+        p, dq = true["p"], 2 * true["q"]
+    else:
+        p, dq, *_ = reference.traction.at(x)
     p_off, q_off = result.traction.p - p, (result.traction.dq - dq) / 2
     largest = float(np.abs(p_off).max() / reference.p0)
     if not dq.any() or f == 0 or reference.regime == "ratchets":

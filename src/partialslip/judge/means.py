@@ -3,12 +3,13 @@
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.bars import LEAST_SHEAR
-from partialslip.result import Traction
+from partialslip.result import Traction, TractionAt
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
@@ -28,8 +29,62 @@ def cell_errors(traction: Traction, reference: Traction, f: float = 0.0) -> tupl
     return errors["p"], errors["q"]
 
 
+class Pair(NamedTuple):
+    """Values of a traction and of its reference, like with like.
+
+    Parameters
+    ----------
+    keys : tuple of str
+        Quantities, as for :func:`fields`; the first is p.
+    places, widths : (n,) arrays
+        Of the cells, m.
+    found, true : (keys, n) arrays
+        Averages over cells that cover the reference's contact. Of a table its own values and those that it would have
+        of the reference, and averages over the parts of the reference's contact for which no value stands.
+    """
+
+    keys: tuple[str, ...]
+    places: Array
+    widths: Array
+    found: Array
+    true: Array
+
+    def errors(self, f: float) -> dict[str, float]:
+        """Relative L2 errors by key (:func:`norm_errors`)."""
+        off, norms = (np.sqrt(values**2 @ self.widths) for values in (self.found - self.true, self.true))
+        return relative(off, norms, f, self.keys)
+
+    def off(self, arm: int = 0) -> dict[str, float]:
+        """Integrals of the differences by key, times x to the power ``arm``."""
+        sums = (self.found - self.true) @ (self.widths * self.places**arm)
+        return dict(zip(self.keys, sums.tolist(), strict=True))
+
+
+def paired(traction: Traction, reference: Traction, keys: tuple[str, ...]) -> Pair:
+    """Return the values of ``traction`` and ``reference`` for the ``keys`` and, first, for p."""
+    keys = tuple(dict.fromkeys(("p", *keys)))
+    own, true = (partial(fields, each, keys=keys) for each in (traction, reference))
+    if traction.observed is None:
+        cells = _cells(traction, reference)
+        averages = (means(of, cells, each.breaks) for of, each in ((own, traction), (true, reference)))
+        return Pair(keys, (cells[1:] + cells[:-1]) / 2, np.diff(cells), *averages)
+    (starts, ends), of = traction.observed.cells.T, traction.observed.of
+    places, widths = traction.x, ends - starts
+    found, wanted = _by_key(traction.values, keys), of(true, reference.breaks)
+    # from the end of each part to the start of the next, within the reference's contact
+    contact = reference.breaks.min(), reference.breaks.max()
+    left, right = np.clip(np.stack([np.append(contact[0], ends), np.append(starts, contact[1])]), *contact)
+    if (bare := right > left).any():
+        cells = np.stack([left[bare], right[bare]], axis=1).ravel()
+        between = (means(of, cells, each.breaks)[..., ::2] for of, each in ((own, traction), (true, reference)))
+        found, wanted = (np.concatenate(pair, axis=-1) for pair in zip((found, wanted), between, strict=True))
+        places = np.append(places, (left + right)[bare] / 2)
+        widths = np.append(widths, (right - left)[bare])
+    return Pair(keys, places, widths, found, wanted)
+
+
 def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[str, ...]) -> dict[str, float]:
-    """Return relative L2 errors of cell averages by key.
+    """Return relative L2 errors by key: of cell averages, or of the values of a table.
 
     Parameters
     ----------
@@ -42,28 +97,25 @@ def norm_errors(traction: Traction, reference: Traction, f: float, keys: tuple[s
         to the larger of the norm of the quantity and 1e-3 of f p's norm; without friction, where q = 0, relative to
         the norm of p. Zero if both are zero.
     """
-    cells, every = _cells(traction, reference), ("p", *keys)
-    widths = np.diff(cells)
-    found, true = (means(partial(fields, each, keys=every), cells, each.breaks) for each in (traction, reference))
-    off, norms = (np.sqrt(values**2 @ widths) for values in (found - true, true))
+    errors = paired(traction, reference, keys).errors(f)
+    return {key: errors[key] for key in keys}
+
+
+def relative(off: Array, norms: Array, f: float, keys: tuple[str, ...]) -> dict[str, float]:
+    """Return errors by key from norms of errors, ``off``, and of tractions, (keys,), first of p; ``f`` and ``keys`` as
+    for :func:`norm_errors`."""
     least = LEAST_SHEAR * f * norms[0] if f else norms[0]
     return {
         key: _ratio(error, norm if key.startswith("p") else max(norm, least))
-        for key, error, norm in zip(keys, off[1:].tolist(), norms[1:].tolist(), strict=True)
+        for key, error, norm in zip(keys, off.tolist(), norms.tolist(), strict=True)
     }
 
 
-def resultants_over_cells(traction: Traction, keys: tuple[str, ...]) -> dict[str, float]:
-    """Return integrals of p, p_1 or q over all cells of the ``traction``, N/m, by key; ``keys`` names them."""
+def integrals(traction: Traction, keys: tuple[str, ...], arm: int = 0) -> dict[str, float]:
+    """Return integrals of p, p_1 or q times x to the power ``arm`` over all cells, N/m or N; ``keys`` names them."""
     cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
-    sums = means(partial(fields, traction, keys=keys), cells, cells) @ np.diff(cells)
+    sums = means(lambda x: x**arm * fields(traction, x, keys), cells, cells) @ np.diff(cells)
     return dict(zip(keys, sums.tolist(), strict=True))
-
-
-def moment(traction: Traction, key: str = "p") -> float:
-    """Return the moment int x p dx of the ``traction`` about x = 0, N; ``key`` is p or p_1 (load points 2 and 1)."""
-    cells = np.unique(np.concatenate([traction.breaks, [] if traction.cells is None else traction.cells]))
-    return float(means(lambda x: x * fields(traction, x, (key,))[0], cells, cells) @ np.diff(cells))
 
 
 def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
@@ -71,7 +123,10 @@ def fields(traction: Traction, x: Array, keys: tuple[str, ...]) -> Array:
 
     ``keys`` are p and p_1 (pressure at load points 2 and 1), q = dq/2, and q1 and q2, if the ``traction`` has them.
     """
-    found = traction.at(x)
+    return _by_key(traction.at(x), keys)
+
+
+def _by_key(found: TractionAt, keys: tuple[str, ...]) -> Array:
     known = {"p_1": found.pressures[0], "p": found.p, "q": found.dq / 2, "q1": found.q1, "q2": found.q2}
     return np.array([known[key] for key in keys])
 

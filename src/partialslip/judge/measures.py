@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.judge.means import means, moment, norm_errors, resultants_over_cells
+from partialslip.judge.means import Pair, integrals, means, paired
 from partialslip.result import RATCHETS, Result, Traction
 from partialslip.scene import Scene
 
@@ -47,15 +47,39 @@ class Measure:
     undetermined: str = ""
 
 
+def pressures_of(of: Traction, to: Traction) -> tuple[str, ...]:
+    """Return the keys of the pressures of two tractions: at load points 1 and 2 if one of both varies."""
+    return ("p",) if of.p1 is None and to.p1 is None else ("p_1", "p")
+
+
+def levels_of(of: Traction, to: Traction) -> tuple[str, ...]:
+    """Return the keys of the shear at the load points, if both tractions have it."""
+    return ("q1", "q2") if of.values.levels and to.values.levels else ()
+
+
+def pair_of(result: Result, reference: Result) -> Pair:
+    """Return the tractions of ``result`` and ``reference``, like with like, in all quantities that both have."""
+    of, to = result.traction, reference.traction
+    return paired(of, to, (*pressures_of(of, to), "q", *levels_of(of, to)))
+
+
 def measures(
-    result: Result, reference: Result, scene: Scene, unknown: Mapping[str, str], *, stresses: bool = True
+    result: Result,
+    reference: Result,
+    scene: Scene,
+    unknown: Mapping[str, str],
+    *,
+    stresses: bool = True,
+    pair: Pair | None = None,
 ) -> Iterator[Measure]:
-    """Yield the measures between ``result`` and ``reference`` for the ``scene``, those of ``stresses`` if wanted.
+    """Yield the measures between ``result`` and ``reference`` for the ``scene``, those of ``stresses`` if wanted; with
+    their tractions' ``pair`` if it is known already.
 
     A quantity that does not exist has no values and no error. An undetermined quantity has values and an error, but
     is not judged; nor is one that is ``unknown`` for the scene (by quantity, why).
     """
-    for quantity, scale, true, found, error in _measured(result, reference, scene, stresses):
+    known = pair or pair_of(result, reference)
+    for quantity, scale, true, found, error in _measured(result, reference, known, scene, stresses):
         if absent := _absent(quantity, reference, scene):
             yield Measure(quantity, scale, None, None, None, absent)
         else:
@@ -99,25 +123,24 @@ def _undetermined(quantity: str, result: Result, reference: Result, unknown: Map
 _Values = tuple[str, str, float | None, float | None, float | None]
 
 
-def _measured(result: Result, reference: Result, scene: Scene, stresses: bool) -> Iterator[_Values]:
+def _measured(result: Result, reference: Result, pair: Pair, scene: Scene, stresses: bool) -> Iterator[_Values]:
     """Yield (quantity, scale, reference value, value, error)."""
     a, p0, f = reference.a, reference.p0, scene.friction.f
     yield _apart("a", "a", 1.0, result.a / a)
     yield from _contact_ends(result, reference)
     yield from _stick_ends(result, reference)
     of, to = result.traction, reference.traction
-    pressures = ("p",) if of.p1 is None and to.p1 is None else ("p_1", "p")
-    levels = ("q1", "q2") if of.values.levels and to.values.levels else ()
-    errors = norm_errors(of, to, f, (*pressures, "q", *levels))
-    sums = resultants_over_cells(of, (*pressures, "q"))
+    pressures, levels = pressures_of(of, to), levels_of(of, to)
+    errors, sums = pair.errors(f), _integrals(of, to, pair, (*pressures, "q"))
     applied = dict(zip(("p_1", "p"), scene.end_pressing, strict=True))
     for key in pressures:
         yield _apart(key.replace("p", "P"), "P", applied[key].P / scene.P, sums[key] / scene.P)
         yield key, NORM, None, None, errors[key]
-    for key in () if scene.even else pressures:
-        M = applied[key].M
-        known = moment(to, key) if M is None else M
-        yield _apart(key.replace("p", "M"), "P a", *(each / (scene.P * a) for each in (known, moment(of, key))))
+    known, found = ({}, {}) if scene.even else (integrals(to, pressures, 1), _integrals(of, to, pair, pressures, 1))
+    for key, M in found.items():
+        given = applied[key].M
+        true = known[key] if given is None else given
+        yield _apart(key.replace("p", "M"), "P a", *(each / (scene.P * a) for each in (true, M)))
     yield _apart("p_max", "p0", to.p_max / p0, of.p_max / p0)
     limit = f * scene.P
     yield _apart("dQ", "2 f P", *((half / limit if limit else math.nan) for half in (scene.load.dQ / 2, sums["q"])))
@@ -133,6 +156,15 @@ def _measured(result: Result, reference: Result, scene: Scene, stresses: bool) -
     for key, error in (("surface", surface_error(result, reference)), ("inside", inside_error(result, reference))):
         if error is not None:
             yield key, NORM, None, None, error
+
+
+def _integrals(of: Traction, to: Traction, pair: Pair, keys: tuple[str, ...], arm: int = 0) -> dict[str, float]:
+    """Return integrals by key of x to the power ``arm`` times the traction, N/m or N. Those of a table are the
+    reference's and the sums of the differences from it: what lies between points is in both."""
+    if of.observed is None:
+        return integrals(of, keys, arm)
+    off = pair.off(arm)
+    return {key: true + off[key] for key, true in integrals(to, keys, arm).items()}
 
 
 def _apart(quantity: str, scale: str, reference: float, found: float) -> _Values:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from partialslip.bars import CERTIFICATE_BAR
-from partialslip.judge.verdict import NAN, Outcome, Verdict, judged
+from partialslip.judge.verdict import NAN, Outcome, Verdict, judged, read_to
 from partialslip.result.record import ResultRecord
 
 # accuracy: Difference, in a, of an error from that of the lengths of the file. Below it the error of the file counts:
@@ -27,7 +27,7 @@ def judged_again(verdict: Verdict, result: ResultRecord, reference: ResultRecord
         if error is not None and abs(error - verdict.error) > _ROUNDING * max(1.0, error):
             at, is_at = ((each or 0.0) / reference.a for each in (true[key], own[key]))
             verdict = replace(verdict, reference=at, found=is_at, error=error)
-    return replace(verdict, outcome=_outcome(verdict))
+    return replace(verdict, outcome=_outcome(verdict, read_to(verdict.quantity, result)))
 
 
 def conditions_again(result: ResultRecord, told: Iterable[Verdict] = ()) -> tuple[Verdict, ...]:
@@ -52,12 +52,12 @@ def conditions_again(result: ResultRecord, told: Iterable[Verdict] = ()) -> tupl
     return finite, *residuals
 
 
-def _outcome(verdict: Verdict) -> Outcome:
+def _outcome(verdict: Verdict, unsure: float) -> Outcome:
     """Return the outcome that follows from error and bar, as :func:`partialslip.judge.verdict.decide` finds it."""
     if verdict.error is None:
         lost = verdict.reason == NAN or (verdict.reference is not None and verdict.bar is not None)
         return Outcome.MISSED if lost else Outcome.NOT_JUDGED
-    return Outcome.NOT_JUDGED if verdict.bar is None else judged(verdict.error, verdict.bar)
+    return Outcome.NOT_JUDGED if verdict.bar is None else judged(verdict.error, verdict.bar, unsure)
 
 
 def _regime(verdict: Verdict) -> Verdict:

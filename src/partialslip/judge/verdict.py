@@ -12,12 +12,14 @@ from partialslip.bars import BARS, CERTIFICATE_BAR
 from partialslip.judge.known import base, error_of
 from partialslip.judge.measures import Measure, unsteady
 from partialslip.result import Result
+from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
 
 # Bars on traction errors, in multiples of the accuracy asked of a, m and n.
 P_BAR, Q_BAR = BARS["p"], BARS["q"]
 
 NAN, NO_BAR = "not a number", "no bar"
+READ = "read"  # fixed: setting of a result that was read from a table
 
 _TENSIONS = {"small tension", "large tension"}
 _STICKING = {"sticking ends", "no slip"}  # regimes of varying pressure in which an end does not slip throughout
@@ -109,9 +111,21 @@ def _known(value: _Value) -> _Value | None:
     return float(value) if math.isfinite(value) else None
 
 
-def judged(error: float, bar: float) -> Outcome:
-    """Return PASSED if ``error`` <= ``bar``, MISSED otherwise and for NaN."""
-    return Outcome.PASSED if error <= bar else Outcome.MISSED
+def judged(error: float, bar: float, unsure: float = 0.0) -> Outcome:
+    """Return PASSED if ``error`` <= ``bar``, MISSED otherwise and for NaN; NOT_JUDGED if an error that may be larger or
+    smaller by ``unsure`` decides."""
+    outcomes = {Outcome.PASSED if each <= bar else Outcome.MISSED for each in (error - unsure, error + unsure)}
+    return outcomes.pop() if len(outcomes) == 1 else Outcome.NOT_JUDGED
+
+
+def read_to(quantity: str, result: Result | ResultRecord) -> float:
+    """Return what a table tells of a length to, in a: the error estimate of reading it. 0 for results that are not read
+    from a table, and for quantities that are compared like with like."""
+    key = quantity.removesuffix("_1").removesuffix("_2")
+    if READ not in result.settings or key not in result.estimate:
+        return 0.0
+    found = result.estimate[key]
+    return math.inf if found is None else found
 
 
 def plus_estimate(bar: Bar, quantity: str, reference: Result) -> Bar:
@@ -139,7 +153,7 @@ def decide(measure: Measure, bar: Bar | None, result: Result) -> Verdict:
     NaN is missed with or without a bar. A value that only the reference has is missed if there is a bar. A quantity
     that does not exist for the reference is not judged.
     """
-    outcome, reason = _decided(measure, bar)
+    outcome, reason = _decided(measure, bar, read_to(measure.quantity, result))
     return Verdict(
         quantity=measure.quantity,
         outcome=outcome,
@@ -153,8 +167,8 @@ def decide(measure: Measure, bar: Bar | None, result: Result) -> Verdict:
     )
 
 
-def _decided(measure: Measure, bar: Bar | None) -> tuple[Outcome, str]:
-    """Return the outcome and the reason for it."""
+def _decided(measure: Measure, bar: Bar | None, unsure: float) -> tuple[Outcome, str]:
+    """Return the outcome and the reason for it; the error may be larger or smaller by ``unsure``."""
     if measure.undetermined:
         return Outcome.NOT_JUDGED, measure.undetermined
     if measure.error is not None and not math.isfinite(measure.error):
@@ -165,7 +179,10 @@ def _decided(measure: Measure, bar: Bar | None) -> tuple[Outcome, str]:
         return Outcome.NOT_JUDGED, (bar and bar.reason) or NO_BAR
     if measure.error is None:
         return Outcome.MISSED, "the result has no value where the reference has one"
-    return judged(measure.error, bar.value), bar.reason
+    outcome = judged(measure.error, bar.value, unsure)
+    if outcome is Outcome.NOT_JUDGED:
+        return outcome, f"this table tells {measure.quantity} to {unsure:.1g} {measure.scale}"
+    return outcome, bar.reason
 
 
 def judge_regime(
@@ -203,6 +220,7 @@ def judge_regime(
 
 def _too_near(result: Result, reference: Result, width: float) -> str:
     """Return which zone, narrower than ``width`` (m), alone distinguishes the regimes; empty if there is none."""
+    width += max(read_to(key, result) for key in "mn") * reference.a
     names, zone = {result.regime, reference.regime}, reference if reference.m is not None else result
     if zone.m is None or zone.n is None or zone.stick_half_width is None:
         return ""

@@ -3,6 +3,7 @@
 import csv
 import errno
 import filecmp
+import functools
 import glob
 import io
 import itertools
@@ -31,15 +32,16 @@ def csv_text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerows([_plain(cell) for cell in row] for row in itertools.chain([head], rows))
+    writer.writerows(
+        [_plain(cell) if isinstance(cell, str) else cell for cell in row] for row in itertools.chain([head], rows)
+    )
     return text.getvalue()
 
 
-def _plain(cell: object) -> object:
-    """Return ``cell``; text without control characters, and with an apostrophe if it would be a formula. Numbers are
-    none, in text neither."""
-    if not isinstance(cell, str):
-        return cell
+@functools.lru_cache(1024)  # cost: a column repeats its text
+def _plain(cell: str) -> str:
+    """Return ``cell`` without control characters, and with an apostrophe if it would be a formula. Numbers in text are
+    none."""
     cell = printable(cell)
     if not cell.startswith(_FORMULA):
         return cell

@@ -26,6 +26,7 @@ _LEAST = 1e-17  # display: smallest error in the figure
 _ERROR_LINES = ("-", "--", ":", "-.")
 _MESH = 1.5, 1.0  # display: largest distance from the middle of the contact, and |y|, of the mesh, in a
 _MARKERS = 41  # display: on a curve
+_DRAWN = 5000  # display: most points of a line of errors
 _MARGIN = 0.04  # display: beyond the contact, in a
 _ALL = "1", "D"  # display: marks of p and q with all effects
 
@@ -181,7 +182,7 @@ def draw_errors(axes: "Axes", run: Run) -> None:
     a, p0 = first.a, first.p0
     for name, line in zip(run.comparisons, cycle(_ERROR_LINES)):
         result, label = run.results[name], _plain(name)
-        x = result.traction.x
+        x = result.traction.x[:: -(-len(result.traction.x) // _DRAWN)]
         found, true = result.traction.at(x), reference.traction.at(x)
         at_2 = _span(result.ends[1], reference.ends[1])  # p is that of load point 2
         _draw_error(axes, x, a, (found.p - true.p) / p0, at_2, color="0.55", ls=line, label=f"p, {label}")
@@ -216,7 +217,7 @@ def _legend_above(axes: "Axes") -> None:
 def _spread(result: Result) -> Array:
     """Return some of the nodes, m, about evenly spread over the contact."""
     x = result.traction.x
-    nearest = np.abs(x[:, None] - np.linspace(x[0], x[-1], _MARKERS)).argmin(axis=0)
+    nearest = np.searchsorted((x[1:] + x[:-1]) / 2, np.linspace(x[0], x[-1], _MARKERS))
     return x[np.unique(nearest)]
 
 

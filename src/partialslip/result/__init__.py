@@ -18,5 +18,6 @@ from partialslip.result.result import SteadyState as SteadyState
 from partialslip.result.state import State as State
 from partialslip.result.state import load_state as load_state
 from partialslip.result.stick_zone import StickZone as StickZone
+from partialslip.result.traction import Observed as Observed
 from partialslip.result.traction import Traction as Traction
 from partialslip.result.traction import TractionAt as TractionAt

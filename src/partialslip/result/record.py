@@ -151,4 +151,7 @@ def number(value: float | None) -> JsonNumber:
 
 def numbers(values: Array) -> Numbers:
     """Return ``values`` (n,) with None in place of NaN and infinity."""
-    return tuple(each if known else None for each, known in zip(values.tolist(), np.isfinite(values), strict=True))
+    found, finite = values.tolist(), np.isfinite(values)
+    if finite.all():
+        return tuple(found)
+    return tuple(each if known else None for each, known in zip(found, finite, strict=True))

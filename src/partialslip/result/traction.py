@@ -64,6 +64,23 @@ def largest(x: Array, p: Array) -> float:
     return float(max(p.max(), p[1] + rise))
 
 
+class Observed(NamedTuple):
+    """What the values of a table stand for, so that a reference is compared like with like.
+
+    Parameters
+    ----------
+    cells : (n, 2) array
+        Ends of the part of the contact line that each value stands for, ascending, m. No value stands for what lies
+        between them, or beyond.
+    of : callable
+        ``of(function, breaks)``: values, (keys, n), that the table would have of ``function``, (k,) -> (keys, k), which
+        is not smooth at ``breaks`` (m).
+    """
+
+    cells: Array
+    of: Callable[[Callable[[Array], Array], Array], Array]
+
+
 @dataclass(frozen=True, repr=False)
 class Traction(Short):
     """Tractions over the contact line.
@@ -81,6 +98,8 @@ class Traction(Short):
         Points where the tractions are not smooth, m: the ends of the contact and of the stick zone.
     cells : (c + 1,) array or None
         Ends of the cells (contact edges of the mesh) for cell averages, m; None if the method has no cells.
+    observed : Observed or None
+        What the values stand for if they are those of a table; None if the tractions are functions of x.
     """
 
     x: Array
@@ -88,6 +107,7 @@ class Traction(Short):
     at: Callable[[Array], TractionAt]
     breaks: Array
     cells: Array | None = None
+    observed: Observed | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "at", at_points(self.at))

@@ -8,9 +8,10 @@ from typing import Literal
 
 import numpy as np
 
-from partialslip.bars import Accuracy, asked
+from partialslip.bars import LARGEST, Accuracy, asked
 from partialslip.errors import InputError
 from partialslip.judge import reference as references
+from partialslip.judge.measures import levels_of, pressures_of
 from partialslip.methods import REFERENCES
 from partialslip.result import Result
 from partialslip.run import Run, compared, run
@@ -19,8 +20,10 @@ from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.score.ends import FEWEST
 from partialslip.score.kinds import KINDS, Kind
 from partialslip.score.method import centred, scored
-from partialslip.score.mistakes import in_another_unit, mistakes
+from partialslip.score.mistakes import at_one_load_point, in_another_unit, mistakes
+from partialslip.score.observed import hidden
 from partialslip.score.read import read_tractions
+from partialslip.score.samples import FEWEST_POINTS
 
 _STRIPS = 2.0  # accuracy: widths of a strip that is not resolved: largest error that it may cause
 
@@ -126,7 +129,12 @@ def _read_as(scene: Scene, result: Result, reference: Result, bars: Mapping[str,
     result = replace(result, notes=(*mistakes(scene, result, reference), *result.notes))
     if in_another_unit(scene, result, reference):
         result = _without_stick_zone(result, "x is in another unit than the scene")
+    if why := at_one_load_point(scene, result):
+        result = _without_stick_zone(replace(result, regime=reference.regime), why)
+        shears = dict.fromkeys(("dQ", "q", "q1", "q2"), why)
+        result = replace(result, undetermined={**result.undetermined, **shears})
     result = _unresolved(result, reference, bars or {})
+    result = _too_far_apart(scene, result, reference)
     if reference.regime == "ratchets":  # not visible in tractions
         result = replace(result, regime="ratchets")
     return result
@@ -154,5 +162,26 @@ def _unresolved(result: Result, reference: Result, bars: Mapping[str, float]) ->
     return _without_stick_zone(result, why) if hidden else result
 
 
+def _too_far_apart(scene: Scene, result: Result, reference: Result) -> Result:
+    """``result`` with what the spacing of its points hides of the ``reference``; it does not tell a traction of which
+    that is more than the largest bar, nor one within which
+    hardly a point lies."""
+    of, to = result.traction, reference.traction
+    hides = hidden(of.x, to, scene.friction.f, (*pressures_of(of, to), "q", *levels_of(of, to)))
+    unseen = {key: f"points are too far apart: {off:.1g} of it lies between them" for key, off in hides.items()
+              if off > LARGEST}  # fmt: skip
+    left, right = to.breaks.min(), to.breaks.max()
+    if (count := int(np.count_nonzero((of.x > left) & (of.x < right)))) < FEWEST_POINTS:
+        unseen = dict.fromkeys(hides, f"{count} of its points lie within the contact: must be at least {FEWEST_POINTS}")
+    sums = {"p": ("P", "M"), "p_1": ("P_1", "M_1"), "q": ("dQ",)}
+    unseen |= {each: why for key, why in unseen.items() for each in sums.get(key, ())}
+    return replace(
+        result,
+        settings={**result.settings, **{f"spacing_hides_{key}": float(f"{hides[key]:.2g}") for key in ("p", "q")}},
+        undetermined={**unseen, **result.undetermined},
+    )
+
+
 def _without_stick_zone(result: Result, why: str) -> Result:
-    return replace(result, stick_centre=None, stick_half_width=None, undetermined=dict.fromkeys(("m", "n"), why))
+    without = {**result.undetermined, "m": why, "n": why}
+    return replace(result, stick_centre=None, stick_half_width=None, undetermined=without)

@@ -8,6 +8,7 @@ import numpy as np
 
 from partialslip.arrays import Array, Indices
 from partialslip.errors import InputError
+from partialslip.score.rows import Label, check_equal_x
 from partialslip.units import SYSTEMS, Units
 
 Corners = tuple[tuple[int, ...], ...]
@@ -88,14 +89,17 @@ def read_frd(text: str, origin: str, chosen: tuple[int, int] | None, load_points
         raise InputError(f"{origin}: contact results at the load points: must be at the same nodes")
     stresses = np.array([each.stress for each in found])
     touched = (stresses != 0).any(axis=(0, 2))
-    x = _x_of_nodes(numbers, points[:, 0], found[0].keys[touched, 0], origin)
-    return _columns(x, stresses[:, touched])
+    x, *across = (_at_nodes(numbers, column, found[0].keys[touched, 0], origin) for column in points.T)
+    columns = _columns(x, stresses[:, touched])
+    labels = [Label(name, number, column.tolist()) for name, number, column in zip("yz", (2, 3), across, strict=True)]
+    check_equal_x(columns, labels, origin, "write those with one {name} to a table of x, p, q1 and q2, and score that")
+    return columns
 
 
 def read_dat(
     text: str, mesh: str, origin: str, chosen: tuple[int, int] | None, load_points: LoadPoints
-) -> dict[str, Array]:
-    """Columns x, p, p1, q1 and q2 of a .dat file, at slave nodes, or as means over slave faces.
+) -> tuple[dict[str, Array], bool]:
+    """Columns x, p, p1, q1 and q2 of a .dat file, at slave nodes or as means over slave faces, and whether over faces.
 
     ``mesh`` is the content of the .frd file, which has the coordinates. The rest as for :func:`read_frd`.
     """
@@ -104,11 +108,12 @@ def read_dat(
     keys = np.unique(np.concatenate([each.keys for each in found]), axis=0)
     lines = mesh.splitlines()
     numbers, points = _nodes(lines, origin)
-    if keys.shape[1] == 2:
+    faces = keys.shape[1] == 2
+    if faces:
         x = _middles(lines, keys, numbers, points[:, 0], origin)
     else:
-        x = _x_of_nodes(numbers, points[:, 0], keys[:, 0], origin)
-    return _columns(x, np.array([_means(keys, each) for each in found]))
+        x = _at_nodes(numbers, points[:, 0], keys[:, 0], origin)
+    return _columns(x, np.array([_means(keys, each) for each in found])), faces
 
 
 def _columns(x: Array, stresses: Array) -> dict[str, Array]:
@@ -258,11 +263,11 @@ def _middles(lines: Sequence[str], keys: Indices, numbers: Indices, x: Array, or
             raise InputError(f"{origin}: face {face} of element {element}: must be in the .frd file of the same name")
         means.append([nodes[corner] for corner in local])
     count = np.array([len(nodes) for nodes in means])
-    at = _x_of_nodes(numbers, x, np.concatenate(means), origin)
+    at = _at_nodes(numbers, x, np.concatenate(means), origin)
     return np.add.reduceat(at, np.cumsum(count) - count) / count
 
 
-def _x_of_nodes(numbers: Indices, x: Array, wanted: Indices, origin: str) -> Array:
+def _at_nodes(numbers: Indices, x: Array, wanted: Indices, origin: str) -> Array:
     order = np.argsort(numbers)
     place = np.searchsorted(numbers[order], wanted)
     known = (place < len(numbers)) & (numbers[order][np.minimum(place, len(numbers) - 1)] == wanted)

@@ -5,14 +5,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
 from partialslip.scene import Scene
 from partialslip.score.headers import COLUMN_DIMENSIONS, headings, known, selected
+from partialslip.score.rows import Label, check_equal_x
 from partialslip.score.samples import PLAUSIBLE, unusable
 from partialslip.units import SI, Units
 
 _NO_VALUE = ("", "-", "--", "novalue", "no value", "n/a", "na")
+_METHOD = "method"  # fixed: column of the tables that run writes
 _MOST_ROWS = 1_000_000  # limit: rows of a table
 _TEMPLATE_ROWS = 81  # display: rows of the template
 _TEMPLATE_REACH = 1.1  # display: largest |x| of the template, in contact half-widths
@@ -64,56 +66,117 @@ def read_csv(
     InputError
         If the table cannot be read; the message names line and column.
     """
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), start=1) if line.partition("#")[0].strip()]
-    if not lines:
-        raise InputError(f"{origin}: empty: must have a header line with x, p and dq")
-    if len(lines) > _MOST_ROWS:
-        raise InputError(f"{origin}: {len(lines)} lines: must be at most {_MOST_ROWS}")
-    numbers = [number for number, _ in lines]
-    bare = [line.partition("#")[0].strip(" \r") for _, line in lines]
-    separator = max(",;\t", key=bare[0].count)
-    separator = separator if separator in bare[0] else ""
-    rows = [_fields(line, separator) for line in bare]
-    names = headings(bare[0]) if not separator else [name.strip() for name in rows[0]]
-    headless = chosen is not None and all(map(_is_number, rows[0]))
-    if not headless and all(map(_is_number, rows[0])):
-        raise InputError(f"{origin}: line {numbers[0]}: must be a header line with x, p and dq; or give --columns")
-    if headless:
-        names = [str(k + 1) for k in range(len(names))]
-    else:
-        rows, numbers = rows[1:], numbers[1:]
-    if short := next((n for n, row in zip(numbers, rows, strict=True) if len(row) != len(names)), None):
-        raise InputError(f"{origin}: line {short}: must have {len(names)} fields, like the header line")
-    wanted = selected(names, chosen, origin, anew) if chosen else known(names, origin, anew)
-    used = sorted({column for each in wanted.values() for column in each.parts})
-    full = [all(row[column].lower() not in _NO_VALUE for column in used) for row in rows]
-    kept = [row for row, whole in zip(rows, full, strict=True) if whole]
-    numbers = [number for number, whole in zip(numbers, full, strict=True) if whole]
-    table = {column: _numbers([row[column] for row in kept], numbers, names[column], origin) for column in used}
-    sums = {name: sum((sign * table[column] for column, sign in each.parts.items()), np.zeros(len(kept)))
+    table = _table(text, origin, headless=chosen is not None)
+    names = table.names
+    if chosen:
+        wanted = selected(names, chosen, origin, anew)
+    else:  # a column without values is none
+        filled = [not table.lines or not all(map(_no_value, table.column(k))) for k in range(len(names))]
+        wanted = known([name if some else "" for name, some in zip(names, filled, strict=True)], origin, anew)
+    used = sorted({each for column in wanted.values() for each in column.parts})
+    kept = np.flatnonzero(~np.any([_empty(table.column(k)) for k in used], axis=0))
+    left_out = len(table.lines) - len(kept)
+    if left_out:
+        table = table.only(kept.tolist())
+    numbers = {k: _numbers(table.column(k), table.lines, names[k], origin) for k in used}
+    sums = {name: sum((sign * numbers[column] for column, sign in each.parts.items()), np.zeros(len(kept)))
             for name, each in wanted.items()}  # fmt: skip
     values = {
         name: column * unit if (unit := wanted[name].unit) else units.to_si(column, COLUMN_DIMENSIONS[name])
         for name, column in sums.items()
     }
-    left_out = len(rows) - len(kept)
+    _check_single(table, used, values, origin)
     notes = [f"left out: {left_out} row{'s' * (left_out > 1)} without values"] if left_out else []
     expressions = [f"{name} = {each.text}" for name, each in wanted.items() if each.text != name]
     return Columns(values, ", ".join(expressions), tuple(notes), any(each.moment for each in wanted.values()))
 
 
-def _fields(line: str, separator: str) -> list[str]:
-    """Fields of a line, split at blanks if ``separator`` is empty. Commas that do not separate are decimal commas."""
-    fields = line.split(separator) if separator else line.split()
-    if separator == ",":
-        return [_unquoted(field) for field in fields]
-    return [_unquoted(field).replace(",", ".") for field in fields]
+class _Table(NamedTuple):
+    """Fields of a table: ``names`` of the ``columns``, the ``lines`` of the file in which its rows are, and the line
+    with the header, ``head``. The ``separator`` is empty for blanks; ``plain`` fields are numbers as they stand."""
+
+    names: list[str]
+    columns: list[list[str]]
+    lines: list[int]
+    head: int
+    separator: str
+    plain: bool
+
+    def column(self, k: int) -> list[str]:
+        """Fields of column ``k``."""
+        return self.columns[k] if self.plain else [_field(field, self.separator) for field in self.columns[k]]
+
+    def only(self, kept: list[int]) -> "_Table":
+        """The table with the ``kept`` rows alone."""
+        columns = [[column[row] for row in kept] for column in self.columns]
+        return self._replace(columns=columns, lines=[self.lines[row] for row in kept])
 
 
-def _unquoted(field: str) -> str:
-    """Strip blanks and one pair of quotes from ``field``."""
-    bare = field.strip()
-    return bare[1:-1] if len(bare) > 1 and bare[0] == bare[-1] == '"' else bare
+def _table(text: str, origin: str, headless: bool) -> _Table:
+    """Split ``text`` into fields; a table without a header line is allowed if ``headless``."""
+    bare = text.splitlines()
+    if "#" in text:
+        bare = [line.partition("#")[0] for line in bare]
+    numbers = [number for number, line in enumerate(bare, start=1) if line and not line.isspace()]
+    if not numbers:
+        raise InputError(f"{origin}: empty: must have a header line with x, p and dq")
+    bare = [bare[number - 1] for number in numbers]
+    first, head = bare[0].strip(" \r"), numbers[0]
+    separator = max(",;\t", key=first.count)
+    separator = separator if separator in first else ""
+    fields = [_field(field, separator) for field in first.split(separator or None)]
+    if all(map(_is_number, fields)):
+        if not headless:
+            raise InputError(f"{origin}: line {head}: must be a header line with x, p and dq; or give --columns")
+        names = [str(k + 1) for k in range(len(fields))]
+    else:
+        names = fields if separator else headings(first)
+        bare, numbers = bare[1:], numbers[1:]
+    if len(bare) > _MOST_ROWS:
+        raise InputError(f"{origin}: {len(bare)} rows: must be at most {_MOST_ROWS}")
+    width = len(names)
+    counts = (line.count(separator) + 1 if separator else len(line.split()) for line in bare)
+    if short := next((n for n, count in zip(numbers, counts, strict=True) if count != width), None):
+        raise InputError(f"{origin}: line {short}: must have {width} fields, like the header line")
+    every = (separator or " ").join(bare).split(separator or None) if bare else []  # a list a row would take far longer
+    plain = '"' not in text and (separator == "," or "," not in text)
+    return _Table(names, [every[k::width] for k in range(width)], numbers, head, separator, plain)
+
+
+def _check_single(table: _Table, used: list[int], values: Mapping[str, Array], origin: str) -> None:
+    """Check that the rows are of one method, surface and load point; ``used`` columns do not tell them apart.
+
+    Raises InputError with a command that keeps some of them.
+    """
+    split = f"-F'{table.separator}' ".replace("\t", "\\t") if table.separator else ""
+    advice = f"keep one, as by awk {split}'NR == {table.head} || ${{number}} == \"{{kept}}\"' {origin} > one.csv"
+    labels = (Label(name, k + 1, table.column(k)) for k, name in enumerate(table.names) if k not in used)
+    check_equal_x(values, labels, origin, advice)
+    if _METHOD in table.names:
+        label = Label(_METHOD, 1 + (k := table.names.index(_METHOD)), table.column(k))
+        if len(kinds := label.kinds) > 1:
+            kept = advice.format(number=label.number, kept=kinds[0])
+            raise InputError(f"{origin}: tractions by {', '.join(kinds)}: must be by one method: {kept}")
+
+
+def _field(text: str, separator: str) -> str:
+    """A field without blanks and one pair of quotes around it. Commas that do not separate are decimal commas."""
+    bare = text.strip()
+    bare = bare[1:-1] if len(bare) > 1 and bare[0] == bare[-1] == '"' else bare
+    return bare if separator == "," else bare.replace(",", ".")
+
+
+def _no_value(field: str) -> bool:
+    return field.strip().lower() in _NO_VALUE
+
+
+def _empty(fields: list[str]) -> Mask:
+    """Where ``fields`` (n,) hold no value, (n,)."""
+    try:
+        np.fromiter(map(float, fields), float, len(fields))
+    except ValueError:
+        return np.array([_no_value(field) for field in fields], bool)
+    return np.zeros(len(fields), bool)
 
 
 def csv_template(scene: Scene, a: float) -> str:

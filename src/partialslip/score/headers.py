@@ -133,6 +133,7 @@ def _complete(wanted: dict[str, Wanted], names: list[str], origin: str, anew: bo
     shear, and put them in this order."""
     normal = [name for name in NORMAL if name in wanted]
     shears = [shear for shear in SHEAR_COLUMNS if set(shear) <= set(wanted)]
+    shears = [shear for shear in shears if len(shear) == 2] or shears  # their difference is dq
     if "x" not in wanted or len(normal) != 1 or len(shears) != 1:
         shown = ", ".join(repr(name) for name in names)[:100]
         raise InputError(

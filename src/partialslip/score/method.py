@@ -21,6 +21,7 @@ from partialslip.score.ends import (
 )
 from partialslip.score.friction import FrictionRead, alike, frictions
 from partialslip.score.kinds import Average
+from partialslip.score.observed import observed
 from partialslip.score.samples import FEWEST_POINTS, Samples
 from partialslip.units import Units
 
@@ -108,10 +109,12 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     uncertain = ends is not None and max(uncertainty["m"], uncertainty["n"]) > max(_CERTAIN, _SPACINGS * spacing)
     known = None if uncertain else ends
     why = _why(stick, uncertainty) if uncertain else ""
+    if slips and stick is None and not _tells_sliding(bound[inside], dq[inside], f):
+        why = "no slip zone is found from which f could be read, and so no stick zone"
     notes = samples.notes
     if why:
         notes += (f"m and n are not given: {why}",)
-    if regime == "sliding" and not scene.slides:
+    if regime == "sliding" and not scene.slides and not why:
         notes += ("no stick zone found: |dq|/(2 p) is the same everywhere, within the uncertainty of the points",)
     centre, half_width = ((known[0].x + known[1].x) / 2, (known[1].x - known[0].x) / 2) if known else (None, None)
     traction = _traction(samples, [end for contact in contacts for end in contact.ends], scene.load.in_phase)
@@ -120,7 +123,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         settings={
             "read": "means over cells" if cells else "values at points",
             "spacing_over_a": _rounded(spacing),
-            "noise_over_p0": _rounded(noise_level(p[inside], x[inside]) / p0),
+            "noise_over_p0": _rounded(_noise(p[inside], x[inside]) / p0),
             **(_friction(stick.sides, f) if stick else {}),
             **({"columns": samples.made_of} if samples.made_of else {}),
         },
@@ -171,6 +174,11 @@ def _why(stick: SeenStickZone | None, uncertainty: dict[str, float]) -> str:
     known = f"they are known to {uncertainty['m']:.1g} and {uncertainty['n']:.1g} a only"
     unseen = stick is not None and not any(side.seen for side in stick.sides)
     return f"|dq|/(2 p) is constant nowhere, so that no slip zone is found; {known}" if unseen else known
+
+
+def _tells_sliding(p: Array, dq: Array, asked: float) -> bool:
+    """Whether \\|dq\\|/(2 p) is known well enough to tell a contact that slides from one that does not."""
+    return max(side.uncertainty for side in frictions(p, dq, asked)) * _F_SIGMAS <= _SLIDES * asked
 
 
 def _friction(sides: tuple[FrictionRead, FrictionRead], asked: float) -> dict[str, str | float]:
@@ -293,9 +301,21 @@ def _traction(samples: Samples, ends: list[float], in_phase: bool) -> Traction:
     levels = (samples.q1, samples.q2) if in_phase else (None, None)
     values = TractionAt(samples.p, samples.dq, *levels, samples.p1)
     if cells is not None:
-        return Traction(x, values, Sampled(cells, values).at, cells, cells)
+        return Traction(x, values, Sampled(cells, values).at, cells, cells, observed(samples))
     breaks = np.union1d(x, [end for end in (min(ends), max(ends)) if not x[0] <= end <= x[-1]])
-    return Traction(x, values, Sampled(breaks, Sampled(x, values).at(breaks)).at, breaks, breaks)
+    at = Sampled(breaks, Sampled(x, values).at(breaks)).at
+    return Traction(x, values, at, breaks, breaks, observed(samples))
+
+
+def _noise(values: Array, x: Array) -> float:
+    """Standard deviation of the noise in ``values`` at ``x``, (n,) each, n > 4: from the deviations of points from the
+    cubic through the two points on either side, so that what is left of the spacing is small."""
+    count = len(x) - 4
+    at = np.stack([x[shift : shift + count] for shift in (0, 1, 3, 4)]) - x[2:-2]
+    weights = np.stack([np.prod([at[k] / (at[k] - at[j]) for k in range(4) if k != j], axis=0) for j in range(4)])
+    around = np.stack([values[shift : shift + count] for shift in (0, 1, 3, 4)])
+    off = (values[2:-2] - (weights * around).sum(axis=0)) / np.sqrt(1 + (weights**2).sum(axis=0))
+    return float(1.4826 * np.median(np.abs(off)))
 
 
 def _rounded(number: float) -> float:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.judge.means import fields, integrals
 from partialslip.result import Result
 from partialslip.scene import Scene
 from partialslip.units import UNITS, Dimension
@@ -48,9 +49,10 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     stresses = _others(_STRESSES, scene.units.size("Pa"))
     x = _guess(result.a / reference.a, _others(_LENGTHS, scene.units.size("m"))) or _Guess("", 1.0)
     P, dQ = P * x.factor, dQ * x.factor
+    load = _sum_of_dq(scene, reference)
     p = _guess(P / P2, stresses) or _Guess("", 1.0)
     share = 1.0 if seen is None else seen / scene.friction.f / p.factor  # of dq, in the dq that friction requires
-    q = _shear(dQ, share, seen is not None, scene, stresses)
+    q = _shear(dQ, share, seen is not None, load, scene, stresses)
     dQ, share = dQ * q.factor, abs(share * q.factor)
     columns = zip(("x", "p", "dq"), (x, p, q), strict=True)
     notes = []
@@ -62,26 +64,72 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     for column, share_of_P, off, where in pressed:
         if abs(share_of_P * p.factor - 1) > max(_OFF, _SIGMAS * off):
             notes.append(f"{column} adds up to {share_of_P * p.factor:.3g} of the scene's P{where}")
-    slides, load = scene.friction.f * (P1 + P2), scene.load.dQ
-    if abs(dQ - load) > max(_OFF, _SIGMAS * dQ_off) * max(abs(load), 0.1 * slides):
+    slides = scene.friction.f * (P1 + P2)
+    if one := at_one_load_point(scene, result):
+        notes.append(one)
+    elif abs(dQ - load) > max(_OFF, _SIGMAS * dQ_off) * max(abs(load), 0.1 * slides):
         notes.append(
             f"dq adds up to {dQ / load:.3g} of the scene's dQ"
             if load
             else f"dq adds up to {scene.units.labelled(dQ, 'N/m', 3)}, not 0"
         )
     unsure = float(f_known) / seen if seen and isinstance(f_known, float) else 0.0
-    if seen is not None and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
+    if seen is not None and not one and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
         f = scene.friction.f
         notes.append(f"|dq|/(2 p) is {share * f:.4g} in the slip zones, but the scene's f is {f:g}: is f another?")
-    return (*notes, *_places(scene, result, reference, x.factor))
+    return (*notes, *_pulls(scene, result, reference), *_places(scene, result, reference, x.factor))
 
 
-def _shear(dQ: float, share: float, seen: bool, scene: Scene, stresses: dict[str, float]) -> _Guess:
-    """Likely mistake in dq, from its resultant ``dQ`` and from ``share``, dq in the dq that friction requires."""
+def at_one_load_point(scene: Scene, result: Result) -> str:
+    """Return that the shear in the file of ``result`` is that at one load point, and not a change or half of it; empty
+    if it is not. It adds up to Q there, and reaches f p, not 2 f p, in the slip zones."""
+    f_seen, f = result.settings.get("f_seen"), scene.friction.f
+    if not isinstance(f_seen, float) or not f or not scene.load.in_phase or scene.load.fully_reversed:
+        return ""
+    _, (dQ, off), *_ = _sums(result)
+    slides = f * sum(P for P, _ in scene.end_pressing)
+    near = max(_OFF, _SIGMAS * off)
+    for name, times in (("q", 2.0), ("dq", 1.0)):
+        if abs(f_seen / f / (times / 2) - 1) > _LIKE:
+            continue
+        for point, end in enumerate(scene.load.ends, start=1):
+            Q = scene.load.points[end][0]
+            if name == "q" and abs(times * Q - scene.load.dQ) <= near * abs(scene.load.dQ):  # half of the change
+                continue
+            if Q and abs(dQ - times * Q) <= near * max(abs(times * Q), 0.1 * slides):
+                told = f"{name} adds up to Q at load point {point}, and its slip zones are at f p"
+                return f"{told}: it is the shear at one load point: give both with --columns q1=...,q2=..."
+    return ""
+
+
+def _sum_of_dq(scene: Scene, reference: Result) -> float:
+    """The sum of dq that is expected, N/m: dQ. That of the ``reference`` counts out of phase, where dq is the range of
+    q at each point, and where the contact cannot bear dQ."""
+    bears = scene.load.in_phase and reference.regime not in ("sliding", "ratchets")
+    return scene.load.dQ if bears else 2 * integrals(reference.traction, ("q",))["q"]
+
+
+def _pulls(scene: Scene, result: Result, reference: Result) -> list[str]:
+    """A note where the pressure is negative, and that of the ``reference``, as the table would have it, is not."""
+    traction, to = result.traction, reference.traction
+    lowest, largest = int(traction.p.argmin()), float(traction.p.max())
+    if traction.p[lowest] >= -_OFF * largest:
+        return []
+    (true,) = traction.observed.of(lambda x: fields(to, x, ("p",)), to.breaks) if traction.observed else (0 * to.p,)
+    if true[lowest] < -_OFF * reference.p0:
+        return []
+    place = scene.units.labelled(float(traction.x[lowest]), "m", 4)
+    return [f"p is {traction.p[lowest] / largest:.2g} of its largest at x = {place}: a contact does not pull: is it a "
+            "stress extrapolated to the nodes?"]  # fmt: skip
+
+
+def _shear(dQ: float, share: float, seen: bool, load: float, scene: Scene, stresses: dict[str, float]) -> _Guess:
+    """Likely mistake in dq, from its resultant ``dQ``, where ``load`` is expected, and from ``share``, dq in the dq
+    that friction requires."""
     turned = {f"{unit} {turn}".strip(): size * sign for unit, size in ({"": 1.0} | stresses).items()
               for turn, sign in _TURNS.items() if unit or turn}  # fmt: skip
-    of = dQ / scene.load.dQ if abs(scene.load.dQ) > 0.1 * scene.friction.f * scene.P else np.copysign(share, 1.0)
-    if scene.load.dQ == 0 and not seen:
+    of = dQ / load if abs(load) > 0.1 * scene.friction.f * scene.P else np.copysign(share, 1.0)
+    if load == 0 and not seen:
         return _Guess("", 1.0)
     fits = [
         _Guess(name, size)
@@ -97,7 +145,9 @@ def _places(scene: Scene, result: Result, reference: Result, factor: float) -> l
     middle, expected = (sum(each.ends[1]) / 2 for each in (result, reference))
     off = middle / result.a - expected / reference.a
     known = max(result.estimate.get(key, 0.0) for key in ("a", "left", "right"))
-    if abs(off) > max(2 * known, 1e-9):
+    if cut := _cut(scene, result, reference):
+        notes.append(cut)
+    elif abs(off) > max(2 * known, 1e-9):
         place = f"the contact's middle is at x = {middle / result.a:.2g} a"
         advice = " (--centre auto puts x = 0 there)" if scene.even else f", not at {expected / reference.a:.2g} a"
         notes.append(place + advice)
@@ -111,6 +161,20 @@ def _places(scene: Scene, result: Result, reference: Result, factor: float) -> l
     elif abs(true) > 10 * little and abs(centre + true) <= 0.2 * abs(true):
         notes.append("the stick zone is on the other side: is the sign of x, or of the tension, reversed?")
     return notes
+
+
+def _cut(scene: Scene, result: Result, reference: Result) -> str:
+    """Return that the table shows a part of the contact only; empty if it shows all of it. It ends within the contact
+    of the ``reference``, and two points before an end tell that it is farther than a spacing: p rises like a root."""
+    traction = result.traction
+    left, right = reference.traction.breaks.min(), reference.traction.breaks.max()
+    sides = (("begins", traction.x, traction.p, left, 1), ("ends", traction.x[::-1], traction.p[::-1], right, -1))
+    for word, x, p, end, way in sides:
+        if way * (2 * x[0] - x[1] - end) > 0 and p[0] > max(p[1], 0.0) / np.sqrt(2):
+            place = scene.units.labelled(float(x[0]), "m", 4)
+            advice = "give all of it, as shear differs from side to side"
+            return f"the table {word} at x = {place}, within the contact: {advice}"
+    return ""
 
 
 def _others(units: dict[str, float], own: float) -> dict[str, float]:

@@ -15,6 +15,7 @@ from partialslip.score.calculix import LoadPoints, read_dat, read_frd, stated_un
 from partialslip.score.csvfile import Columns, read_csv
 from partialslip.score.headers import COLUMN_DIMENSIONS, SHEAR_COLUMNS
 from partialslip.score.kinds import Kind, note
+from partialslip.score.rows import Label, check_equal_x
 from partialslip.score.samples import Samples, samples
 from partialslip.units import Units
 
@@ -70,7 +71,8 @@ def read_tractions(
         if suffix == ".frd":
             found = read_frd(mesh, origin, at, load_points)
         else:
-            found = read_dat(content, mesh, origin, at, load_points)
+            found, faces = read_dat(content, mesh, origin, at, load_points)
+            kind = kind or ("mean" if faces else None)
         if not anew:
             del found["p1"]
         units = stated_units(mesh) or scene.units
@@ -92,7 +94,7 @@ def read_tractions(
         made = replace(made, q1=None, q2=None)
     if made.guessed and (guess := note(made.averages, "nodal" if "Fn" in columns.values else "sampled")):
         notes += (guess,)
-    return replace(made, made_of=columns.made_of, notes=notes)
+    return replace(made, made_of=columns.made_of, notes=(*notes, *made.notes))
 
 
 def _in_si(values: dict[str, Array], units: Units) -> Columns:
@@ -126,4 +128,9 @@ def _point_data(file: Path, pressures: tuple[str, ...]) -> dict[str, Array]:
     x, across = points[known, 0], points[known, 1:]
     if len(x) and np.ptp(across[:, 0]) > _FLAT * np.ptp(x):
         raise InputError(f"{file}: points with p lie {np.ptp(across[:, 0]):.3g} m apart across x: must be on one line")
-    return dict(zip(("x", *names), (column[known] for column in columns), strict=True))
+    values = dict(zip(("x", *names), (column[known] for column in columns), strict=True))
+    labels = [
+        Label(name, number, column.tolist()) for name, number, column in zip("yz", (2, 3), across.T, strict=False)
+    ]
+    check_equal_x(values, labels, str(file), "keep the points with one {name}, those of the contact")
+    return values

@@ -11,6 +11,7 @@ from partialslip.scene import LARGEST, SMALLEST
 from partialslip.score.ends import possible_averages
 from partialslip.score.headers import FIRST
 from partialslip.score.kinds import EVERY, Average, Kind, cells_around, cells_of_nodes
+from partialslip.score.rows import check_equal_x, starts
 
 _DIGITS = 8  # accuracy: digits of x: numbers with fewer count as rounded
 _WHOLE = 1e-5  # accuracy: of a unit in the last place: deviation from a whole number of units
@@ -116,6 +117,7 @@ def samples(
     sizes = [factors[0], *[factors[1]] * (pressed - 1), *[factors[2]] * (len(names) - pressed)]
     values = np.stack([column * size for column, size in zip(columns.values(), sizes, strict=True)])
     _check(values, names, origin)
+    notes = check_equal_x(dict(zip(names, values, strict=True)), (), origin, "")
     values = _merged(values)
     x, cells, resolution = values[0], None, abs(factors[0]) * _resolution(columns["x"])
     if normal == "Fn":
@@ -142,7 +144,7 @@ def samples(
     own = averages[0].kind
     if normal != "Fn" and own != "sampled":
         cells = cells_around(x) if own == "mean" else cells_of_nodes(x)
-    return Samples(x, p, dq, q1, q2, cells, resolution, p1=p1, kind=own, guessed=kind is None, averages=averages)
+    return Samples(x, p, dq, q1, q2, cells, resolution, "", notes, p1, own, kind is None, averages)
 
 
 def _guessed(x: Array, p: Array, forces: bool) -> tuple[Average, ...]:
@@ -182,11 +184,9 @@ def _resolution(x: Array) -> float:
 def _merged(values: Array) -> Array:
     """Sort the columns of ``values`` by the first row and average columns with equal first entries, to rounding."""
     values = values[:, np.argsort(values[0], kind="stable")]
-    x = values[0]
-    new = np.concatenate([[True], np.diff(x) > 1e-7 * np.ptp(x)]) if len(x) else np.zeros(0, bool)
-    if not new.any():
+    first = starts(x := values[0])
+    if not len(first):
         return values
-    first = np.flatnonzero(new)
     return np.add.reduceat(values, first, axis=1) / np.diff(np.append(first, len(x)))
 
 
