@@ -18,6 +18,7 @@ Errors = dict[str, float]
 
 _NOTHING = 0.01  # accuracy: of what the accuracy allows: errors of steps that matter to nobody
 _MOST_STEPS = 32  # limit: steps from load point to load point that an accuracy of coupled bodies leads to
+_AT_ONCE = 8  # cost: most times as many steps at once: errors of few steps mostly fall faster than with the first order
 _PROBED = 7  # accuracy: fewest steps from load point to load point with which those of coupled bodies are compared
 _SHEARS = ("change", "q1", "q2")
 
@@ -92,12 +93,13 @@ def other_steps(path: Path) -> Path:
 def more_steps(path: Path, errors: Mapping[str, float], others: Mapping[str, float], accuracy: float) -> Path | None:
     """The ``path`` of coupled bodies in as many steps as make their ``errors``, of first order in the steps, no more
     than half of what the ``accuracy`` (of a) allows, or than the ``others``; a power of 2 times as many, as far as
-    the limit lets them. None if there are enough, or would be too many."""
+    the limits let them. None if there are enough, or would be too many."""
     allowed = {key: max(BARS[key] * accuracy / 2, others.get(key, 0.0)) for key in errors}
     most = _MOST_STEPS // path.substeps
     excess = max((errors[key] / each for key, each in allowed.items()), default=0.0)
     if most < 2 or excess <= 1:
         return None
+    most = min(most, _AT_ONCE)
     power = min(math.ceil(math.log2(min(excess, most))), int(math.log2(most)))
     return replace(path, substeps=path.substeps * 2**power)
 
