@@ -91,7 +91,9 @@ def test_what_room_will_be_left():
     """Room in geometric progression is lost, unless its limit is more than half of it; a power of the cycles is not
     known, nor is room that grew before it fell, or that of fewer than three cycles."""
     count = np.arange(1, 5)[:, None]
-    rooms = np.hstack([0.02**count, 0.7**count, 1 + 0.1**count, 0.1 + 0 * count, 1 / count**2, np.abs(count - 2.5) - 0.4])
+    rooms = np.hstack(
+        [0.02**count, 0.7**count, 1 + 0.1**count, 0.1 + 0 * count, 1 / count**2, np.abs(count - 2.5) - 0.4]
+    )
     bound = np.ones(6)
     assert lost(rooms).tolist() == [True, True, False, False, False, False]
     assert not lost(rooms[:2]).any()
