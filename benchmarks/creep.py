@@ -183,7 +183,7 @@ def main() -> None:
             ratios[method, accuracy, key].append(ratio)
         worst = max(over, key=over.__getitem__, default=None)
         told = f"{worst} {known[worst][0]:.1e} of {known[worst][1]:.1e}: {over[worst]:.2f}" if worst else "not compared"
-        mark = " !" * (worst is not None and over[worst] > 1)
+        mark = " !" if worst and over[worst] > 1 else ""
         print(f"{number:4} {kind:13} {method:5} {accuracy:.0e} {spent:6.2f} s  {regime:14.40} {told}{mark}", flush=True)
     for (method, accuracy), spent in seconds.items():
         print(f"{method} at {accuracy:g}: {spent:.1f} CPU s")
