@@ -21,7 +21,7 @@ from partialslip.result.fields import AtPoints
 
 _SURFACE = 1e-30  # accuracy: depth of points on the surface, as a fraction of a
 _APART = 1e-12  # accuracy: distance below which breaks are merged, as a fraction of a
-_ALONG = 3000  # cost: points along a surface with many breaks: each sees all panels of the contact
+_ALONG = 1500  # cost: points along a surface with many breaks: each sees all panels of the contact
 SURFACE_REACH = 4.0  # limit: half-widths up to which surface stresses are reported
 
 

@@ -11,7 +11,7 @@ from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.turning import Turning
 from partialslip.result import TractionAt
 
-_POINTS, _FEWEST = 101, 9  # display: between neighbouring breaks; between breaks of which there are many
+_POINTS, _FEWEST = 101, 4  # display: between neighbouring breaks; between breaks of which there are many
 
 
 def sample(breaks: Array, most: int | None = None) -> Array:

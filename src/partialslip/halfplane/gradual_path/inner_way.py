@@ -142,20 +142,21 @@ class Way(Seen):
                         return
                     raise LostError(f"no panel is short enough at {self.progress}")
                 continue
-            turn, halved, refused = self._turn(panel), refused > 0, 0
+            turn, halved = self._turn(panel), refused > 0
             if turn is not None:
                 if turn > 1e-3:
                     part = panel.length * float(panel.by.share(np.array(turn)))
                     panel = self._solve(begin, takes, part, speeds, SINE, None, panel.cut(part, SINE))
                     if not panel or panel.tail > _TAIL:
-                        length, self._refused = part / 2, len(self.panels)
-                        if not length >= _SHORTEST:
+                        length, refused, self._refused = part / 2, refused + 1, len(self.panels)
+                        if not length >= _SHORTEST or refused > _REFUSED:
                             raise LostError(f"b turns at {self.progress}")
                         continue
                     self.panels.append(panel._replace(turns=True))
                 takes = not takes
             else:
                 self.panels.append(panel)
+            refused = 0
             at_break = panel.event is not None and not isinstance(panel.event[0], str)
             grown = panel.length if halved and takes else _GROWTH * panel.length
             length = max(grown, length if at_break else 0.0)
