@@ -1,106 +1,76 @@
-"""Locate the ends of zones between the points of a table whose tractions may be coarse, noisy or smoothed.
+"""Ends of zones between the points of a table.
 
-At an end a traction vanishes like a square root: p at the ends of the contact, 2 f p - |dq| at the ends of the stick
-zone. The square of the traction is smooth, and the root of the square is the end. Polynomials of several degrees are
-fitted to the square on windows of different length and distance from the end. Each fit gives an estimate of the end
-with an uncertainty: the difference between degrees, and the noise. The estimate with the least uncertainty is taken.
-Estimates of similar uncertainty elsewhere increase the uncertainty of the end: smoothing, or friction with a penalty,
-spreads an end over some length.
+At the end e of a zone a traction vanishes like a square root: p at the ends of the contact, 2 f p - |dq| at the ends of
+the stick zone; like (e - x)^(3/2) where the end drifted (docs/theory.md, section 7). The end lies between the last
+value above zero and the first that is zero. How far, depends on what the values are: :class:`kinds.Average`.
+
+Within this bracket one model is fitted to the nearest values: the average of (e - x)^(1/2) (c0 + c1 (e - x) + ...).
+All ends, and all averages, that fit as well as noise of the size of the best fit's misfit allows are possible. A second
+reading leaves the nearest values out: what blurs an end over some length, as friction by a penalty does, misleads the
+first more than the second. The interval of both is the uncertainty.
 """
 
 from collections.abc import Sequence
-from itertools import chain, islice, pairwise
+from itertools import permutations, product
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import fdtri, stdtrit
 
 from partialslip.arrays import Array, Indices
+from partialslip.score.kinds import Average
 
-_POINTS = (4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)  # accuracy: of the windows that are tried
-_MANY = 60  # accuracy: most points of a fit; longer windows are thinned out
-_FEW = 8  # accuracy: most points of a window whose scatter about the polynomial is noise alone
-_SKIPPED = (0, 1, 2, 4, 7, 12, 20, 34, 56, 90, 150, 240, 400)  # accuracy: points between the window and the end
-_PART = 0.6  # accuracy: of the zone: largest distance of a window, beyond which the other end matters
-_NEAREST = 2.0  # accuracy: of a window's points: most points skipped
-_NEAR = 3  # accuracy: number of distances that count as near the end
-_AGREE = 3.0  # accuracy: largest difference of estimates from near and far, in their uncertainties
-_FADES = 0.35  # accuracy: of the value three points further in: if the last values are less, the traction fades out
-_RISEN = 0.1  # accuracy: of the mean: a square root rises to this within a fortieth of the zone
-_RISE = 0.1  # accuracy: of the zone: a traction that takes longer to rise to _RISEN fades out
-_STEEP = 3.0  # accuracy: times the median slope: steeper polynomials are due to noise
-_ABOVE = 2.0  # accuracy: times the noise: least value of a window that gives a slope
-_FALL = 0.05  # accuracy: least ratio of the neglected terms from one degree to the next
-_SAFE = 2.6  # accuracy: factor on the least uncertainty, as selecting the least one is biased
-_COMPARABLE = 5.0  # accuracy: times the least uncertainty: largest uncertainty of an estimate that counts for the drift
-_SPREAD = 0.5  # accuracy: of the length over which an end is spread: error of the end
-_CELL = 0.06  # accuracy: of a cell: shift of the end of a square root by taking means over cells
-_DRIFTS = 1e-6  # accuracy: of the largest value: least one of a zone that has drifted
-_CLEAR = 10.0  # accuracy: times the noise: least value beyond the end of a square root that a few points tell
-# accuracy: times the length over which the contact's ends are spread: shortest drift that smoothing does not mimic
-_BLURS = 5.0
-_LEADS = 1e-30  # accuracy: of the largest coefficient of a polynomial: least first one, whose root is far away
+_NEAR = (8, 16)  # accuracy: fewest points of fits beside the end; the one that leaves it less uncertain counts
+_TERMS = (3, 4)  # accuracy: of its polynomial; of both the one that leaves the end less uncertain
+_RISEN = 10.0  # accuracy: times the noise: least value where a fit begins
+_MOST = 48  # cost: most points of a fit; longer ones are thinned out
+_DOUBT = 1e-3  # accuracy: probability that noise alone makes the right end fit so much worse than the best
+_SCAN, _AGAIN = 41, 5  # cost: ends tried at once, and how often between the neighbours of the best
 FEWEST = 3  # accuracy: points beyond the end of a square root that show a drift
 NOISE_FACTOR = 4.0  # accuracy: standard deviations of the noise: smaller values count as noise
 ZERO_LEVEL = 1e-9  # accuracy: of the largest value: smaller values count as zero
 
 
 class ZoneEnd(NamedTuple):
-    """End of a zone at ``x``, m, its ``uncertainty``, m, and the part of it due to the ``spread`` of the end, m."""
+    """End of a zone at ``x``, m, with its ``uncertainty``, m, read from values that may be any of ``averages``."""
 
     x: float
     uncertainty: float
-    spread: float = 0.0
+    averages: tuple[Average, ...] = ()
 
 
-class _Estimate(NamedTuple):
-    """End of a zone from one window, m: its ``uncertainty`` if polynomials of rising degree converge, its ``doubt`` if
-    they do not, and the ``slope`` of the polynomial there."""
+class _Fit(NamedTuple):
+    """The ``best`` end, m, of one fit, the interval from ``low`` to ``high`` that is possible, and the sum of squares
+    that is left (``misfit``), with its degrees of ``freedom``."""
 
-    x: float
-    uncertainty: float
-    doubt: float
-    slope: float
+    best: float
+    low: float
+    high: float
+    misfit: float
+    freedom: int
 
+    @property
+    def width(self) -> float:
+        """Length of the interval, m."""
+        return self.high - self.low
 
-class _Root(NamedTuple):
-    """Root of a polynomial.
-
-    Parameters
-    ----------
-    x : float
-        The root, m.
-    points : int
-        Number of points fitted.
-    highest : float
-        Largest value in the window.
-    slope : float
-        Of the polynomial at the root.
-    scatter : float
-        Mean square deviation of the points from the polynomial.
-    gain : float
-        Standard error of the root divided by the root of ``scatter``.
-    moved : float
-        Shift of the root by the slack, m.
-    """
-
-    x: float
-    points: int
-    highest: float
-    slope: float
-    scatter: float
-    gain: float
-    moved: float
+    def better(self, other: "_Fit") -> bool:
+        """Whether this fit leaves less than the ``other`` by more than chance does."""
+        ratio = other.misfit / other.freedom * self.freedom / self.misfit
+        return other.misfit < np.inf and bool(ratio > fdtri(other.freedom, self.freedom, 1 - _DOUBT))
 
 
 def noise_level(values: Array, x: Array) -> float:
-    """Standard deviation of the noise in ``values`` at ``x``, (n,) each.
-
-    It is estimated from the deviations from the straight line through both neighbours, so that curvature between
-    neighbouring points is included.
-    """
-    share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
-    off = values[1:-1] - (1 - share) * values[:-2] - share * values[2:]
-    return float(1.4826 * np.median(np.abs(off)) / np.sqrt(1.5))
+    """Standard deviation of the noise in ``values`` at ``x``, (n,) each: of their deviations from the cubics through
+    two neighbours on either side, so that little of a smooth curve counts as noise."""
+    if len(x) < 5:
+        return 0.0
+    nodes = np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]]) - x[2:-2]
+    shares = np.ones_like(nodes)
+    for i, j in permutations(range(4), 2):
+        shares[i] *= nodes[j] / (nodes[j] - nodes[i])
+    off = values[2:-2] - (shares * [values[:-4], values[1:-3], values[3:-1], values[4:]]).sum(axis=0)
+    return float(1.4826 * np.median(np.abs(off) / np.sqrt(1 + (shares**2).sum(axis=0))))
 
 
 def zone_around_peak(values: Array, least: Array | float) -> tuple[int, int] | None:
@@ -116,12 +86,33 @@ def zone_around_peak(values: Array, least: Array | float) -> tuple[int, int] | N
     return int(first), int(last)
 
 
-def read_right_end(
-    x: Array, values: Array, last: int, first: int, *, cells: bool = False, slack: Array | None = None, least: float = 0
-) -> ZoneEnd:
-    """Right end of a zone, where ``values`` vanish like a square root.
+def possible_averages(x: Array, p: Array, averages: Sequence[Average]) -> tuple[Average, ...]:
+    """Which of ``averages`` the values of the pressure ``p`` at ``x`` (n,) may be, from both ends of the contact."""
+    least = NOISE_FACTOR * noise_level(p, x)
+    touching = zone_around_peak(p, least)
+    if touching is None or touching[1] - touching[0] < max(_TERMS) + 3:
+        return tuple(averages)
+    first, last = touching
+    left = _Reading(-x[::-1], p[::-1], len(x) - 1 - first, len(x) - 1 - last, least).possible(averages)
+    right = _Reading(x, p, last, first, least).possible(averages)
+    both = [each for each in averages if each in left and each in right]
+    found = both or [each for each in averages if each in left or each in right]
+    plain = [each for each in found if each.count == 1]  # an average over points must show
+    return tuple(plain or found)
 
-    If the values fade out instead, the uncertainty is the length over which they do.
+
+def read_right_end(
+    x: Array,
+    values: Array,
+    last: int,
+    first: int,
+    averages: Sequence[Average],
+    *,
+    least: float = 0.0,
+    slack: Array | None = None,
+    drifts: bool = False,
+) -> ZoneEnd:
+    """Right end of a zone, where ``values`` vanish.
 
     Parameters
     ----------
@@ -129,213 +120,201 @@ def read_right_end(
         Points, ascending, m, and the values that vanish.
     last, first : int
         Last and first point inside the zone.
-    cells : bool
-        Whether values are means over cells. The mean over the cell with the end is left out.
-    slack : (n,) array, optional
-        Common error of all values.
+    averages : sequence of Average
+        What the values may be.
     least : float
         Largest value that counts as noise.
+    slack : (n,) array, optional
+        Common error of all values.
+    drifts : bool
+        Whether the end may have drifted.
     """
-    end = _end(x, values, last, first, cells, np.zeros_like(values) if slack is None else slack, least)
-    mean = float(np.trapezoid(values[first : last + 1], x[first : last + 1])) / max(x[last] - x[first], 1e-300)
-    risen = x[first + np.flatnonzero(values[first : last + 1] >= _RISEN * mean)[-1]]
-    faded = end.x - risen
-    return ZoneEnd(end.x, faded, faded) if faded > _RISE * (x[last] - x[first]) else end
-
-
-def _end(x: Array, values: Array, last: int, first: int, cells: bool, slack: Array, least: float) -> ZoneEnd:
-    """The end and its uncertainty, from polynomials through the squares of the values."""
-    spacing = x[last] - x[max(last - 1, 0)]
-    beyond = x[last + 1] if last + 1 < len(x) else x[last] + 2 * spacing
-    outermost = max(x[-1], beyond) + (beyond - x[last]) / 2
-    reach = min(last - int(_PART * (last - first)), max(last - _FEW, first))
-    windows: list[list[Indices]] = []
-    for skipped in reversed(_SKIPPED):
-        at = last - int(cells) - skipped
-        counts = [count for count in _POINTS if at - count + 1 >= reach and _NEAREST * count >= skipped]
-        windows.append([at - np.arange(0, count, -(-count // _MANY))[::-1] for count in counts])
-    found_on = iter(_roots(x, values, slack, list(chain.from_iterable(windows)), outermost, spacing))
-    levels = [list(islice(found_on, len(level))) for level in windows]
-    every = [root for level in levels for roots in level for root in roots if root]
-    # only the highest degree: the scatter about lower degrees includes curvature
-    close = [roots[-1] for level in levels[-_NEAR:] for roots in level if roots]
-    few = [root.scatter for root in close if root and root.points <= _FEW]
-    floor = float(np.median(few)) if few else 0.0
-    clear = [root for root in every if root.points > _FEW and root.highest > _ABOVE * least]
-    slope = float(np.median([abs(root.slope) for root in clear])) if clear else np.inf
-    # Two expressions for the length that noise hides: here by the median slope, below (outside) by each estimate's own.
-    # They are kept as they are, as the published figures depend on both.
-    hidden, steepest = least**2 / slope, _STEEP * slope
-    every_level = [[end for roots in level for end in _estimates(roots, floor, steepest)] for level in levels]
-    found = _agreeing(every_level)
-    # over the three points before the last a square root falls to half; a steeper fall is fading out
-    fades = last - first >= _FEW and values[last - 1] < _FADES * values[last - 4]
-    apart = 0.0
-    if len(found) < len([level for level in every_level if level]) and not fades:
-        # a kink may mislead the estimates from far windows: prefer those between the last point and the next
-        within = [end for level in every_level[-_NEAR:] for end in level if x[last] <= end.x <= beyond]
-        if within:
-            nearest = min(within, key=lambda end: end.uncertainty)
-            apart = abs(nearest.x - min(found, key=lambda end: end.uncertainty).x) if found else 0.0
-            found = [nearest]
-    if not found:
-        return ZoneEnd(float(x[last] + beyond) / 2, float(x[last] - x[first] if fades else (beyond - x[last]) / 2))
-    outside = [max(end.x - beyond - least**2 / abs(end.slope), 0.0) for end in found]
-    off, best = min(zip(outside, found, strict=True), key=lambda pair: np.hypot(pair[0], pair[1].uncertainty))
-    spread = _SPREAD * max(x[last] - cells * spacing - best.x, off, 0.0)
-    drift = max(abs(end.x - best.x) for end in found if end.uncertainty <= _COMPARABLE * best.uncertainty)
-    own = float(np.linalg.norm((_SAFE * best.uncertainty, _SPREAD * apart, drift)))
-    if x[last] <= best.x <= beyond and not fades:  # the end lies between two points, except for the hidden length
-        own = min(own, beyond - x[last] + hidden)
-    return ZoneEnd(best.x, float(np.linalg.norm((own, spread, _CELL * cells * spacing))), spread)
+    shifts = [values]
+    if slack is not None and slack.max() > ZERO_LEVEL * values.max():
+        shifts, least = [values, values + slack, values - slack], least + float(slack[last])
+    found = [_Reading(x, each, last, first, least).end(averages, drifts) for each in shifts]
+    fit, possible = found[0]
+    low, high = min(each.low for each, _ in found), max(each.high for each, _ in found)
+    return ZoneEnd(fit.best, max(high - fit.best, fit.best - low), possible)
 
 
 def read_left_end(
-    x: Array, values: Array, first: int, last: int, *, cells: bool = False, slack: Array | None = None, least: float = 0
+    x: Array,
+    values: Array,
+    first: int,
+    last: int,
+    averages: Sequence[Average],
+    *,
+    least: float = 0.0,
+    slack: Array | None = None,
+    drifts: bool = False,
 ) -> ZoneEnd:
-    """Left end of a zone: :func:`right_end` of the mirror image.
-
-    ``x``, ``values``, ``first``, ``last``, ``cells``, ``slack`` and ``least`` as there.
-    """
+    """Left end of a zone: :func:`read_right_end` of the mirror image, with the same parameters."""
     count, slack = len(x) - 1, None if slack is None else slack[::-1]
-    end = read_right_end(-x[::-1], values[::-1], count - first, count - last, cells=cells, slack=slack, least=least)
+    end = read_right_end(
+        -x[::-1], values[::-1], count - first, count - last, averages, least=least, slack=slack, drifts=drifts
+    )
     return end._replace(x=-end.x)
 
 
-def blur(contact: tuple[ZoneEnd, ZoneEnd], whole: bool) -> float:
-    """Length over which the ends of the ``contact`` are spread, m; infinite unless the ``whole`` of it is seen."""
-    return max(end.spread for end in contact) / _SPREAD if whole else np.inf
+class _Reading:
+    """Readings of the right end of the zone from point ``first`` to ``last``."""
+
+    def __init__(self, x: Array, values: Array, last: int, first: int, least: float) -> None:
+        inner = values[first : last + 1][::-1]  # a fit reaches no farther than the values rise
+        (fallen,) = np.nonzero(inner < np.maximum.accumulate(inner) - 2 * least)
+        first = last - int(inner[: fallen[0] if len(fallen) else len(inner)].argmax())
+        self.x, self.values, self.last, self.first = x, values, last, first
+        self.spacing = float(x[last] - x[max(last - 1, 0)])
+        (risen,) = np.nonzero(values[first : last + 1] >= _RISEN * least)
+        self.risen = first + int(risen[-1] if len(risen) else 0)
+        # what counts as zero, in c: the values near the end are about the averages of c (end - x)^(1/2)
+        begin = self._begin(_NEAR[0])
+        zero = max(least, ZERO_LEVEL * float(values.max()))
+        self.zero = zero / float(values[begin]) * float(x[last] - x[begin]) ** 0.5
+        self.more = self.spacing if last + 1 == len(x) else 0.0
+
+    def possible(self, averages: Sequence[Average]) -> tuple[Average, ...]:
+        """The ``averages`` that are possible."""
+        return self._near(averages)[1]
+
+    def end(self, averages: Sequence[Average], drifts: bool) -> tuple[_Fit, tuple[Average, ...]]:
+        """The end, and the averages that are possible."""
+        near, possible = self._near(averages)
+        low, high = self._bracket(possible)
+        found = near._replace(low=min(near.low, low), high=max(near.high, high))  # no more than the bracket is known
+        average = possible[0]
+        far = self._far(average, high, 1)
+        if far is not None and far.better(near):
+            found = self._blurred(average, found, far, high)
+        elif far is not None:
+            # what misleads halves with twice the distance, so that the end is off by twice what it moves, if it does
+            inner = min(far.low, 2 * far.best - near.best)
+            if far.high >= low:
+                found = near._replace(
+                    low=min(near.low, max(inner, float(self.x[self.last]) - self.spacing)),
+                    high=max(near.high, far.high),
+                )
+            else:
+                found = found._replace(low=min(found.low, inner))
+        drifted = self._drifted(possible) if drifts else None
+        if drifted and drifted.width < found.width:
+            return drifted, possible
+        return found, possible
+
+    def _bracket(self, averages: Sequence[Average]) -> tuple[float, float]:
+        """Where the end may lie: the last value is above zero, and the next is not."""
+        low = min(each.begins(self.x, self.last) for each in averages)
+        high = max(each.begins(self.x, self.last + 1) + each.hidden(self.zero, self.spacing) for each in averages)
+        return low, high + self.more
+
+    def _begin(self, count: int) -> int:
+        """First point of a window of ``count`` points, or more: the values there are well above the noise."""
+        return max(min(self.last + 1 - count, self.risen), self.first)
+
+    def _near(self, averages: Sequence[Average]) -> tuple[_Fit, tuple[Average, ...]]:
+        """From the values beside the end, and those beyond; with the averages that are possible."""
+        if self.last - self.first < 2:  # too few to fit
+            low, high = self._bracket(averages)
+            return _Fit((low + high) / 2, low, high, np.inf, 1), tuple(averages)
+        beyond = min(max(self.last + 2, int(np.searchsorted(self.x, self._bracket(averages)[1]))), len(self.x) - 1)
+        found = []
+        for begin, terms in product({self._begin(count) for count in _NEAR}, _TERMS):
+            window = _thinned(begin, beyond)
+            inside = int(np.count_nonzero(window <= self.last))
+            terms = max(min(terms, inside - 2), 1)
+            freedom = max(inside - terms - 1, 1)
+            tried = [self._misfits(each, window, *self._bracket([each]), 0.5, terms) for each in averages]
+            within = min(misfits.min() for _, misfits in tried) * _worse(freedom)
+            fits = {each: _fit(*of, within, freedom) for each, of in zip(averages, tried, strict=True)
+                    if of[1].min() <= within}  # fmt: skip
+            best = min(fits.values(), key=lambda fit: fit.misfit)
+            low, high = min(fit.low for fit in fits.values()), max(fit.high for fit in fits.values())
+            found.append((best._replace(low=low, high=high), tuple(sorted(fits, key=lambda each: fits[each].misfit))))
+        (fit, possible), closest = (
+            min(found, key=lambda each: each[0].width),
+            min((each for each, _ in found), key=lambda each: each.misfit / each.freedom),
+        )
+        return fit._replace(misfit=closest.misfit, freedom=closest.freedom), possible
+
+    def _far(self, average: Average, high: float, times: int) -> _Fit | None:
+        """Without the nearest points, and ``times`` as far away; None if there are too few points."""
+        count, fewest = self.last + 1 - self._begin(_NEAR[0]), max(_TERMS) + 3
+        stop = self.last - times * (3 * count // 4)
+        if times == 1:
+            stop = max(stop, min(self.first + fewest - 1, self.last - 1))
+        window = _thinned(max(stop + 1 - times * (3 * count // 2), self.first), stop)
+        if len(window) < fewest:
+            return None
+        fits = []
+        for terms in _TERMS:
+            freedom = len(window) - terms - 1
+            tried = self._misfits(average, window, float(self.x[stop]), high, 0.5, terms)
+            fits.append(_fit(*tried, tried[1].min() * _worse(freedom), freedom))
+        return min(fits, key=lambda fit: fit.width)
+
+    def _blurred(self, average: Average, near: _Fit, far: _Fit, high: float) -> _Fit:
+        """Where the nearest points mislead: from farther and farther away, until the end moves by half a spacing at
+        most. What misleads halves with twice the distance, so that the end is off by as much as it moved."""
+        moved, times, low = abs(far.best - near.best), 2, far.low
+        while moved > self.spacing / 2 and (farther := self._far(average, high, times)) is not None:
+            moved, times, low = abs(farther.best - far.best), 2 * times, min(far.low, farther.low)
+            far = farther
+        return far._replace(low=min(low, far.best - moved), high=high)
+
+    def _drifted(self, averages: Sequence[Average]) -> _Fit | None:
+        """Where the values fall with the power 3/2, as two points and three show, whose ends agree better than with a
+        square root and with a line."""
+        if self.last - self.first < FEWEST:
+            return None
+        known, apart = {}, {}
+        for power in (0.5, 1.0, 1.5):
+            ends = []
+            for each, terms in product(averages, (1, 2)):
+                window = np.arange(self.last - terms, self.last + 1)
+                tried, misfits = self._misfits(each, window, *self._bracket([each]), power, terms)
+                end = float(tried[misfits.argmin()])
+                inside = min(end - tried[0], tried[-1] - end) > ZERO_LEVEL * (tried[-1] - tried[0])
+                ends.append(end if inside else np.inf)
+            known[power], apart[power] = ends[1], max(ends) - min(ends) if max(ends) < np.inf else np.inf
+        if apart[1.5] >= min(apart[0.5], apart[1.0]):
+            return None
+        return _Fit(known[1.5], known[1.5] - apart[1.5], known[1.5] + apart[1.5], 0.0, 1)
+
+    def _misfits(
+        self, average: Average, window: Indices, low: float, high: float, power: float, terms: int
+    ) -> tuple[Array, Array]:
+        """Ends from ``low`` to ``high``, (e,), closer together beside the best, and the sum of squares that each leaves
+        of the values at the ``window``."""
+        scale = float(self.x[window[-1]] - self.x[window[0]])
+        x, y, powers = self.x / scale, self.values[window], power + np.arange(terms)
+        ends = np.linspace(low, high, _SCAN) / scale
+        every: list[tuple[Array, Array]] = []
+        for _ in range(_AGAIN):
+            Q, _R = np.linalg.qr(average.powers(x, window, ends, powers))
+            left = y - np.einsum("enk,ek->en", Q, np.einsum("enk,n->ek", Q, y))
+            misfits = (left**2).sum(axis=1) + len(y) * (ZERO_LEVEL * np.abs(y).max()) ** 2
+            every.append((ends, misfits))
+            best = int(misfits.argmin())
+            ends = np.linspace(ends[max(best - 1, 0)], ends[min(best + 1, _SCAN - 1)], _SCAN)
+        ends, misfits = (np.concatenate(parts) for parts in zip(*every, strict=True))
+        order = np.argsort(ends, kind="stable")
+        return ends[order] * scale, misfits[order]
 
 
-def drifted_right_end(x: Array, values: Array, end: ZoneEnd, last: int, least: float, spread: float) -> ZoneEnd:
-    """Right end of a zone that may have drifted there: beyond the ``end`` of a square root, ``values`` then fall with
-    the power 3/2 of the distance (docs/theory.md, section 7). The ``end`` itself if they do not, less sure if they may.
-
-    A square root that was averaged over some length falls with the same power: only ends of the contact that are
-    ``spread`` (:func:`blur`) over much less than the drift show that nothing was averaged.
-
-    ``x``, ``values``, ``last`` and ``least`` as for :func:`right_end`.
-    """
-    high = values > max(least, _DRIFTS * values.max())
-    beyond = np.flatnonzero(high & (x > end.x) & (np.arange(len(x)) <= last + 1))
-    if not len(beyond) or (len(beyond) < FEWEST and values[beyond[0]] < _CLEAR * least):
-        return end
-    farthest = float(x[min(beyond[-1] + 1, len(x) - 1)])
-    unsure = end._replace(uncertainty=float(np.hypot(end.uncertainty, farthest - end.x)))
-    told = len(beyond) >= FEWEST and x[beyond[-1]] - end.x >= _BLURS * spread
-    if not told or (np.diff(values[beyond]) >= 0).any() or (np.diff(beyond) > 1).any():
-        return unsure
-    height = np.cbrt(values[beyond] / values.max()) ** 2
-    t, found = x[beyond] - x[beyond[-1]], []
-    for count, degree in ((max(len(t) // 2, 2), 1), (len(t), 2), (len(t), 3)):
-        fitted = np.polyfit(t[-count:], height[-count:], min(degree, count - 1))
-        root = float(_nearest_root(fitted[None], 0.0, np.inf)[0])
-        if np.isnan(root):
-            return unsure
-        found.append(float(x[beyond[-1]]) + root)
-    uncertainty = _SAFE * float(np.ptp(found))
-    return ZoneEnd(found[1], uncertainty) if uncertainty < end.spread else unsure
+def _worse(freedom: int) -> float:
+    """How much larger than the least the sum of squares may be by noise alone, with that many degrees of freedom."""
+    return float(1 + stdtrit(freedom, 1 - _DOUBT / 2) ** 2 / freedom)
 
 
-def drifted_left_end(x: Array, values: Array, end: ZoneEnd, first: int, least: float, spread: float) -> ZoneEnd:
-    """Left end of a zone that has drifted there: :func:`drifted_right_end` of the mirror image."""
-    mirrored = end._replace(x=-end.x)
-    found = drifted_right_end(-x[::-1], values[::-1], mirrored, len(x) - 1 - first, least, spread)
-    return found._replace(x=-found.x)
+def _fit(ends: Array, misfits: Array, within: float, freedom: int) -> _Fit:
+    """The best of the ``ends``, and the first and last whose misfit is ``within`` bounds, each up to the next that is
+    not."""
+    (good,) = np.nonzero(misfits <= within)
+    low, high = ends[max(good[0] - 1, 0)], ends[min(good[-1] + 1, len(ends) - 1)]
+    return _Fit(float(ends[misfits.argmin()]), float(low), float(high), float(misfits.min()), freedom)
 
 
-def _agreeing(levels: list[list[_Estimate]]) -> list[_Estimate]:
-    """The best estimate from each distance (``levels``), from far to near, until one disagrees with those before."""
-    found: list[_Estimate] = []
-    left, right = -np.inf, np.inf
-    for level in levels:
-        if level:
-            surest = min(level, key=lambda end: end.doubt)
-            left, right = max(left, surest.x - _AGREE * surest.doubt), min(right, surest.x + _AGREE * surest.doubt)
-            if left > right:
-                break
-            found.append(min(level, key=lambda end: end.uncertainty))
-    return found
-
-
-def _estimates(roots: list[_Root | None], floor: float, steepest: float) -> list[_Estimate]:
-    """Estimates of the end from ``roots`` of polynomials of neighbouring degrees.
-
-    ``floor`` is the least mean square of the noise, and the bias of y^2. Slopes above ``steepest`` are due to noise.
-    """
-    found, before = [], np.inf
-    for lower, higher in pairwise(roots):
-        if lower and higher:
-            others = np.hypot(higher.gain * np.sqrt(max(higher.scatter, floor)), higher.moved)
-            apart = abs(lower.x - higher.x)
-            left_out = apart * max(min(apart / before, 1.0), _FALL) if before < np.inf else apart
-            steep = max(abs(higher.slope) / steepest, 1.0)
-            doubt, uncertainty = (steep * float(np.hypot(others, part)) for part in (apart, left_out))
-            found.append(_Estimate(higher.x + floor / higher.slope, uncertainty, doubt, higher.slope))
-            before = max(apart, 1e-300)
-    return found
-
-
-def _roots(
-    x: Array, y: Array, slack: Array, windows: Sequence[Indices], far: float, spacing: float
-) -> list[list[_Root | None]]:
-    """Roots of polynomials through y^2 on each of the ``windows``, by degree, between the last point of the window less
-    the ``spacing`` and ``far``.
-
-    The error of ``y`` is the same at all points, so that the error of y^2 is proportional to y. Shorter windows are
-    filled up with points of no weight.
-    """
-    found: list[list[_Root | None]] = [[] for _ in windows]
-    if not windows:
-        return found
-    counts = np.array([len(window) for window in windows])
-    places = np.arange(counts.max()) - (counts.max() - counts)[:, None]
-    points = np.concatenate(windows)[np.maximum(places, 0) + (np.cumsum(counts) - counts)[:, None]]
-    end, highest = x[points[:, -1]], np.where(places >= 0, np.abs(y[points]), 0.0).max(axis=1)
-    scale = end - x[points[:, 0]]
-    t, size = (x[points] - end[:, None]) / scale[:, None], np.abs(y[points])
-    weights = (places >= 0) / np.maximum(size, 0.03 * highest[:, None])
-    right = np.stack([y[points] * size, 2 * size * slack[points]], axis=-1) * weights[..., None]
-    rising, kept = np.stack([t**3, t**2, t, np.ones_like(t)], axis=-1) * weights[..., None], np.arange(len(windows))
-    for degree in (1, 2, 3):
-        kept = kept[counts[kept] > degree + 1]
-        A = rising[kept, :, 3 - degree :]
-        Q, R = np.linalg.qr(A)
-        full = np.abs(R.diagonal(axis1=1, axis2=2)).min(axis=1) > 1e-13 * np.abs(R).max(axis=(1, 2))
-        kept, A, Q, R = kept[full], A[full], Q[full], R[full]
-        if not len(kept):
-            return found
-        inverse = np.linalg.inv(R)
-        solution, shift = np.moveaxis(inverse @ (Q.mT @ right[kept]), -1, 0)
-        root = _nearest_root(solution, -spacing / scale[kept], (far - end[kept]) / scale[kept])
-        powers = np.where(np.isnan(root), 0.0, root)[:, None] ** np.arange(degree, -1, -1)
-        slope = (solution[:, :-1] * np.arange(degree, 0, -1) * powers[:, 1:]).sum(axis=1)
-        freedom = counts[kept] - degree - 1
-        residual = (A @ solution[..., None])[..., 0] - right[kept, :, 0]
-        scatter = (residual**2).sum(axis=1) / freedom + (1e-12 * highest[kept]) ** 2  # at least rounding
-        known = np.isfinite(root) & (slope != 0)
-        per = scale[kept] / np.where(known, np.abs(slope), 1.0)
-        few = 1 + 2 / freedom  # few degrees of freedom underestimate the scatter
-        gain = few * per * np.linalg.norm((powers[:, None] @ inverse)[:, 0], axis=1)
-        moved = per * np.abs((powers * shift).sum(axis=1))
-        at = end[kept] + root * scale[kept]
-        rows = np.column_stack([at, counts[kept], highest[kept], slope / scale[kept], scatter, gain, moved])
-        for window, good, row in zip(kept.tolist(), known.tolist(), rows.tolist(), strict=True):
-            found[window].append(_Root(row[0], int(row[1]), *row[2:]) if good else None)
-    return found
-
-
-def _nearest_root(polynomials: Array, near: Array | float, far: Array | float) -> Array:
-    """The real root nearest to 0 of each of the ``polynomials`` (k, d + 1), from the highest power on, (k,); nan where
-    none lies between ``near`` and ``far``, numbers or (k,)."""
-    count, degree = len(polynomials), polynomials.shape[1] - 1
-    leading, least = polynomials[:, :1], _LEADS * np.abs(polynomials).max(axis=1, keepdims=True)
-    companion = np.zeros((count, degree, degree))
-    companion[:, 1:, :-1] = np.eye(degree - 1)
-    companion[:, 0] = -polynomials[:, 1:] / np.where(np.abs(leading) > least, leading, least)
-    roots = np.linalg.eigvals(companion)
-    low, high = np.reshape(near, (-1, 1)), np.reshape(far, (-1, 1))
-    inside = (np.abs(roots.imag) < 1e-12) & (roots.real > low) & (roots.real < high)
-    distance = np.where(inside, np.abs(roots.real), np.inf)
-    best = np.take_along_axis(roots.real, distance.argmin(axis=1)[:, None], axis=1)[:, 0]
-    return np.where(inside.any(axis=1), best, np.nan)
+def _thinned(first: int, last: int) -> Indices:
+    """Points from ``first`` to ``last``; every second, third, ... if there are too many."""
+    return np.arange(last, first - 1, min(-(last + 1 - first) // _MOST, -1))[::-1]

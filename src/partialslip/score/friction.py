@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.score.kinds import RUNNING
 
 # accuracy: points of the windows that are tried
 _COUNTS = (3, 4, 5, 6, 8, 11, 16, 24, 36, 54, 80, 120, 180, 270, 400, 600, 900)
@@ -17,6 +18,7 @@ _OWN = 2e-3  # accuracy: relative uncertainty of f up to which a side keeps a va
 _APART = 3.0  # accuracy: difference of two values of f, in their uncertainty, above which they differ
 _F_ROUNDING = 1e-12  # accuracy: least relative uncertainty of f
 _PRESSED = 0.2  # accuracy: of the largest p: where p is less, |dq|/(2 p) is too noisy to bound f
+_FLATTER = 0.1  # accuracy: of the uncertainty of f: what averaging p, too, must leave of it to be right
 _TOP = 3  # accuracy: number of points with the largest |dq|/(2 p) that bound f
 
 
@@ -29,6 +31,21 @@ class FrictionRead(NamedTuple):
     sign: int
     scatter: float
     seen: bool
+
+
+def alike(p: Array, dq: Array, inside: slice) -> tuple[Array, Array, int]:
+    """``p`` and ``dq``, (n,), at the points in contact (``inside``), and the number of points that they are averaged
+    over: p is averaged, too, where dq alone was. It shows in slip: |dq| is then in proportion to the averaged p."""
+
+    def of(count: int) -> Array:
+        return np.convolve(p, np.ones(count) / count, "same")[inside] if len(p) >= count else p[inside]
+
+    def unsure(p: Array) -> float:
+        return min(side.uncertainty / max(side.f, 1e-300) for side in (_outer(p, q), _outer(p[::-1], q[::-1])))
+
+    q = dq[inside]
+    best = min(RUNNING, key=lambda count: unsure(of(count)))
+    return (of(best), q, best) if unsure(of(best)) < _FLATTER * unsure(p[inside]) else (p[inside], q, 1)
 
 
 def frictions(p: Array, dq: Array, asked: float) -> tuple[FrictionRead, FrictionRead]:

@@ -7,21 +7,20 @@ import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
+from partialslip.gradual import may_turn_round
 from partialslip.result import Clock, Regime, Result, SteadyState, Traction, TractionAt
 from partialslip.scene import Scene
 from partialslip.score.ends import (
     NOISE_FACTOR,
     ZERO_LEVEL,
     ZoneEnd,
-    blur,
-    drifted_left_end,
-    drifted_right_end,
     noise_level,
     read_left_end,
     read_right_end,
     zone_around_peak,
 )
-from partialslip.score.friction import FrictionRead, frictions
+from partialslip.score.friction import FrictionRead, alike, frictions
+from partialslip.score.kinds import Average
 from partialslip.score.observed import observed
 from partialslip.score.samples import FEWEST_POINTS, Samples
 from partialslip.units import Units
@@ -30,7 +29,7 @@ _SLIDES = 0.02  # limit: of 2 f p0: where 2 f p - |dq| is less everywhere, the c
 _F_SIGMAS = 3.0  # accuracy: uncertainties of f: largest error of 2 f p
 _X_SIGMAS = 2.0  # accuracy: standard deviations of x: largest error of an end due to rounded x
 _CERTAIN = 0.05  # accuracy: of a: largest uncertainty of ends of the stick zone that are given ...
-_SPACINGS = 2.0  # accuracy: ... or this many spacings of the points
+_SPACINGS = 3.0  # accuracy: ... or this many spacings of the points
 
 
 class SeenContact(NamedTuple):
@@ -89,16 +88,12 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
     first, last = min(contact.first for contact in contacts), max(contact.last for contact in contacts)
     inside = slice(first, last + 1)
     slips = f > 0 and bool(np.abs(dq).max() > max(ZERO_LEVEL * p0, NOISE_FACTOR * noise_level(dq, x)))
-    seen = [contact.first > 0 and contact.last + 1 < len(x) for contact in contacts]
-    spread = max(blur((contact.left, contact.right), whole) for contact, whole in zip(contacts, seen, strict=True))
     bound = p * scene.friction.at(x) / f if scene.friction.varies else p  # over the largest f
-    told = x[inside], bound[inside], dq[inside]
-    stick = _stick_zone(*told, f, p0, cells, None if _pressed(scene) else spread) if slips else None
+    stick = _stick_zone(x, bound, dq, inside, scene, p0, samples.averages) if slips else None
     # a point that is out of contact at a load point does not stick
     both = max(contact.left for contact in contacts), min(contact.right for contact in contacts)
     regime, ends = _regime(scene, stick, *both, slips)
     left, right = larger.left, larger.right
-    # smoothing spreads the ends of the stick zone by as much as the ends of the contact
     either = float(np.linalg.norm((left.uncertainty, right.uncertainty, _X_SIGMAS * samples.resolution)))
     uncertainty = {
         "a": either / 2 / a,
@@ -106,12 +101,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         "right": max(contact.right.uncertainty for contact in contacts) / a,
     }
     if ends:
-        shared = (
-            left.spread,
-            right.spread,
-            _X_SIGMAS * samples.resolution,
-            middle,
-        )
+        shared = (_X_SIGMAS * samples.resolution, middle)
         uncertainty |= {
             key: float(np.linalg.norm((end.uncertainty, *shared))) / a for key, end in zip("mn", ends, strict=True)
         }
@@ -156,23 +146,23 @@ def centred(samples: Samples, origin: str, units: Units) -> Samples:
 
 def _contacts(samples: Samples, origin: str) -> tuple[SeenContact, SeenContact]:
     """Contacts at load points 1 and 2."""
-    x, cells = samples.x, samples.cells is not None
-    second = _contact(x, samples.p, cells, "p", origin)
-    return second if samples.p1 is None else _contact(x, samples.p1, cells, "p1", origin), second
+    second = _contact(samples, samples.p, "p", origin)
+    return second if samples.p1 is None else _contact(samples, samples.p1, "p1", origin), second
 
 
-def _contact(x: Array, p: Array, cells: bool, name: str, origin: str) -> SeenContact:
-    """Contact under the pressure ``p`` at the points ``x``, (n,); ``name`` is the column's for messages."""
+def _contact(samples: Samples, p: Array, name: str, origin: str) -> SeenContact:
+    """Contact under the pressure ``p`` at the points of ``samples``, (n,); ``name`` is the column's for messages."""
+    x, averages = samples.x, samples.averages
     least = NOISE_FACTOR * noise_level(p, x)
     touching = zone_around_peak(p, least)
     if touching is None or touching[1] - touching[0] + 1 < FEWEST_POINTS:
-        hint = "; or are the elements of another order (--order)?" if cells else ""
+        hint = "; or are the elements of another order (--order)?" if samples.cells is not None else ""
         raise InputError(
             f"{origin}: {name}: must exceed its noise at {FEWEST_POINTS} or more neighbouring points{hint}"
         )
     first, last = touching
-    left = read_left_end(x, p, first, last, cells=cells, least=least)
-    right = read_right_end(x, p, last, first, cells=cells, least=least)
+    left = read_left_end(x, p, first, last, averages, least=least)
+    right = read_right_end(x, p, last, first, averages, least=least)
     if not right.x > left.x:
         wrong = "must have a contact of positive width; the ends found are in the wrong order"
         raise InputError(f"{origin}: {name}: {wrong}")
@@ -210,15 +200,18 @@ def _widths(samples: Samples) -> Array:
 
 
 def _stick_zone(
-    x: Array, p: Array, dq: Array, asked: float, p0: float, cells: bool, spread: float | None
+    x: Array, p: Array, dq: Array, inside: slice, scene: Scene, p0: float, averages: tuple[Average, ...]
 ) -> SeenStickZone | None:
-    """Stick zone from 2 f p - |dq| at the points in contact; None if nothing sticks. ``p`` is the mean pressure, and
-    where f varies the friction bound over the largest f.
+    """Stick zone from 2 f p - |dq| at the points in contact (``inside``); None if nothing sticks. ``p`` is the mean
+    pressure, and where f varies the friction bound over the largest f.
 
     The room 2 f p - |dq| grows from the ends of the stick zone like a square root, where they drifted with the power
-    3/2; ``spread`` is the length over which the contact's ends are spread. Where the bodies were only pressed (None)
-    it is the sum over all stages of pressing, and grows with the power 3/2: its cube root like a square root.
+    3/2. Where bodies were only pressed it is the sum over all stages of pressing, and grows with the power 3/2: its
+    cube root like a square root.
     """
+    asked, pressed = scene.friction.f, _pressed(scene)
+    p, dq, count = alike(p, dq, inside)
+    x, averages = x[inside], tuple(dict.fromkeys(Average(each.kind, max(each.count, count)) for each in averages))
     sides = frictions(p, dq, asked)
     slacks = [2 * side.uncertainty * p for side in sides]
     room = 2 * min(side.f for side in sides) * p - np.abs(dq)
@@ -232,18 +225,19 @@ def _stick_zone(
         side if side.seen else side._replace(sign=1 if shear >= 0 else -1)
         for side, shear in zip(sides, beyond, strict=True)
     )
+    if scene.friction.varies and averages[0].kind != "sampled":  # f(x) p is then no more than about f p averaged
+        uneven = np.abs(np.gradient(scene.friction.at(x), x) * np.gradient(p, x)) * np.gradient(x) ** 2
+        slacks = [slack + uneven for slack in slacks]
     rooms = [2 * side.f * p - side.sign * dq for side in sides]
     told = [least if side.seen else 0.0 for least, side in zip(hidden, sides, strict=True)]
-    if spread is None:
+    if pressed:
         scale = 2 * asked * p0
         rooms = [scale * np.cbrt(room / scale) for room in rooms]
         told = [scale * float(np.cbrt(least / scale)) for least in told]
         slacks = [np.zeros_like(slack) for slack in slacks]  # f is the scene's
-    left = read_left_end(x, rooms[0], first, last, cells=cells, slack=slacks[0], least=told[0])
-    right = read_right_end(x, rooms[1], last, first, cells=cells, slack=slacks[1], least=told[1])
-    if spread is not None:
-        left = drifted_left_end(x, rooms[0], left, first, hidden[0], spread)
-        right = drifted_right_end(x, rooms[1], right, last, hidden[1], spread)
+    drifts, slacks = not pressed and may_turn_round(scene), [_F_SIGMAS * slack for slack in slacks]
+    left = read_left_end(x, rooms[0], first, last, averages, slack=slacks[0], least=told[0], drifts=drifts)
+    right = read_right_end(x, rooms[1], last, first, averages, slack=slacks[1], least=told[1], drifts=drifts)
     return SeenStickZone(left, right if right.x > left.x else ZoneEnd(left.x, right.uncertainty), sides)
 
 

@@ -22,7 +22,7 @@ def observed(samples: Samples) -> Observed:
         return Observed(_around(x), partial(_sampled, x))
     parts = np.stack([cells[:-1], cells[1:]], axis=1)
     if samples.kind == "nodal":
-        return Observed(parts, partial(_over_weights, x, samples.order))
+        return Observed(parts, partial(_over_weights, x))
     parts[0, 0], parts[-1, 1] = min(cells[0], 2 * x[0] - x[1]), max(cells[-1], 2 * x[-1] - x[-2])
     return Observed(parts, partial(_means, cells))
 
@@ -64,20 +64,18 @@ def _means(cells: Array, function: _Function, breaks: Array) -> Array:
     return means(function, cells, breaks)
 
 
-def _over_weights(x: Array, order: int, function: _Function, breaks: Array) -> Array:
-    """Integrals of ``function`` times the shape functions of elements of this ``order`` with the nodes ``x``, over the
-    integrals of the shape functions."""
-    corners = x[::order]
-    widths, count = np.diff(corners), len(x)
+def _over_weights(x: Array, function: _Function, breaks: Array) -> Array:
+    """Integrals of ``function`` times the shape functions of linear elements between the nodes ``x``, over the integrals
+    of the shape functions."""
+    widths = np.diff(x)
 
     def times_shapes(points: Array) -> Array:
-        element = np.clip(np.searchsorted(corners, points, "right") - 1, 0, len(widths) - 1)
-        s = (points - corners[element]) / widths[element]
-        shapes = [1 - s, s] if order == 1 else [(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)]
-        return np.stack(shapes)[:, None] * np.concatenate([function(points), np.ones((1, len(points)))])
+        element = np.clip(np.searchsorted(x, points, "right") - 1, 0, len(widths) - 1)
+        s = (points - x[element]) / widths[element]
+        return np.stack([1 - s, s])[:, None] * np.concatenate([function(points), np.ones((1, len(points)))])
 
-    parts = means(times_shapes, corners, breaks) * widths
-    sums = np.zeros((parts.shape[1], count))
-    for local, part in enumerate(parts):
-        sums[:, local : local + order * len(widths) : order] += part
+    left, right = means(times_shapes, x, breaks) * widths
+    sums = np.zeros((len(left), len(x)))
+    sums[:, :-1] += left
+    sums[:, 1:] += right
     return sums[:-1] / sums[-1]

@@ -14,7 +14,7 @@ from partialslip.scene import Scene
 from partialslip.score.calculix import LoadPoints, read_dat, read_frd, stated_units
 from partialslip.score.csvfile import Columns, read_csv
 from partialslip.score.headers import COLUMN_DIMENSIONS, SHEAR_COLUMNS
-from partialslip.score.kinds import Kind
+from partialslip.score.kinds import Kind, note
 from partialslip.score.rows import Label, check_equal_x
 from partialslip.score.samples import Samples, samples
 from partialslip.units import Units
@@ -92,6 +92,8 @@ def read_tractions(
     made = samples(columns.values, origin, factors, order, kind)
     if not load.fully_reversed and {"q", "Ft"} & set(columns.values):  # half of the change, but not q at load point 2
         made = replace(made, q1=None, q2=None)
+    if made.guessed and (guess := note(made.averages, "nodal" if "Fn" in columns.values else "sampled")):
+        notes += (guess,)
     return replace(made, made_of=columns.made_of, notes=(*notes, *made.notes))
 
 

@@ -8,8 +8,9 @@ import numpy as np
 from partialslip.arrays import Array, Mask
 from partialslip.errors import InputError
 from partialslip.scene import LARGEST, SMALLEST
+from partialslip.score.ends import possible_averages
 from partialslip.score.headers import FIRST
-from partialslip.score.kinds import Kind, cells_around, cells_of_nodes
+from partialslip.score.kinds import EVERY, Average, Kind, cells_around, cells_of_nodes
 from partialslip.score.rows import check_equal_x, starts
 
 _DIGITS = 8  # accuracy: digits of x: numbers with fewer count as rounded
@@ -44,8 +45,8 @@ class Samples:
         Values at points, means over cells, or nodal forces of linear elements over the nodes' weights.
     guessed : bool
         Whether the kind was guessed, and not given.
-    order : int
-        Order of the elements of nodal forces.
+    averages : tuple of Average
+        What the values may be, the kind first.
     """
 
     x: Array
@@ -60,7 +61,7 @@ class Samples:
     p1: Array | None = None
     kind: Kind = "sampled"
     guessed: bool = False
-    order: int = 1
+    averages: tuple[Average, ...] = (Average("sampled"),)
 
     @property
     def p_mean(self) -> Array:
@@ -122,7 +123,10 @@ def samples(
     if normal == "Fn":
         if order == 2 and len(x) % 2 == 0:
             raise InputError(f"{origin}: {len(x)} nodes: must be an odd number for elements of order 2")
-        cells = _cells(x, order)
+        if order == 2:
+            values = _of_linear_elements(values)
+            x = values[0]
+        cells = cells_of_nodes(x)
         values[1:] /= np.diff(cells)
     for name, p in zip(names[1:pressed], values[1:pressed], strict=True):
         touching = np.count_nonzero(p > 0)
@@ -136,10 +140,18 @@ def samples(
         dq, q1, q2 = 2 * shears[0], -shears[0], shears[0]
     else:
         dq, q1, q2 = shears[0], None, None
-    own: Kind = kind or ("nodal" if normal == "Fn" else "sampled")
+    averages = (Average(kind),) if kind else _guessed(x, p, normal == "Fn")
+    own = kind or ("nodal" if normal == "Fn" else averages[0].kind)
     if normal != "Fn" and own != "sampled":
         cells = cells_around(x) if own == "mean" else cells_of_nodes(x)
-    return Samples(x, p, dq, q1, q2, cells, resolution, "", notes, p1, own, kind is None, order)
+    return Samples(x, p, dq, q1, q2, cells, resolution, "", notes, p1, own, kind is None, averages)
+
+
+def _guessed(x: Array, p: Array, forces: bool) -> tuple[Average, ...]:
+    """What the values of the pressure ``p`` at ``x`` (n,) may be, the likeliest first: nodal forces or values at points
+    where they may be."""
+    likely: Kind = "nodal" if forces else "sampled"
+    return possible_averages(x, p, sorted(EVERY, key=lambda each: each.kind != likely))
 
 
 def _check(values: Array, names: list[str], origin: str) -> None:
@@ -178,10 +190,10 @@ def _merged(values: Array) -> Array:
     return np.add.reduceat(values, first, axis=1) / np.diff(np.append(first, len(x)))
 
 
-def _cells(x: Array, order: int) -> Array:
-    """Ends of the nodes' cells, (n + 1,), m: each as wide as the integral of the node's shape function."""
-    if order == 1:
-        return cells_of_nodes(x)
-    widths = np.diff(x[::2])
-    inner = np.sort(np.concatenate([x[:-1:2] + widths / 6, x[2::2] - widths / 6]))
-    return np.concatenate([[x[0]], inner, [x[-1]]])
+def _of_linear_elements(values: Array) -> Array:
+    """Rows of x and of nodal forces of quadratic elements as of linear ones, whose shape functions are those of the
+    corners and half of those of the middles beside them."""
+    corners, middles = values[:, ::2].copy(), values[1:, 1::2] / 2
+    corners[1:, :-1] += middles
+    corners[1:, 1:] += middles
+    return corners
