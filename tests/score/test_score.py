@@ -50,25 +50,29 @@ def test_errors_fall_with_the_spacing(exact, tmp_path, name):
         coarse, fine = getattr(found[0], key), getattr(found[2], key)
         assert np.log(coarse / fine) / np.log(16) > order
     for key in ("a", "m", "n"):
-        assert getattr(found[0], key) < 0.25 * 2.2 / 80
+        # the flat's corner has three points at the widest spacing: two unknowns and the end
+        assert getattr(found[0], key) < (0.5 if name == "flat-rounded" else 0.25) * 2.2 / 80
         # of the flat's m the points within the corner, beside the kink of p, are few at that spacing
-        assert getattr(found[1], key) < (0.004 if name == "flat-rounded" else 0.002) * 2.2 / 320
+        assert getattr(found[1], key) < (0.01 if name == "flat-rounded" else 0.002) * 2.2 / 320
         assert getattr(found[2], key) < 0.002 * 2.2 / 1280
     assert {c.outcome for c in found} == {Outcome.NOT_JUDGED}  # without bars nothing passes
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_ends_from_twenty_points(exact, tmp_path, name):
-    """A spacing of a ninth of a: ends to a fifth of that; the flat's corner, where p bends within one, to half."""
+    """A spacing of a ninth of a: ends to a fifth of that. To half of it, where four points stick; to the whole beside
+    the flat's corner, which is narrower than the spacing. The estimates tell."""
     scene, result = exact[name]
-    _, comparison = errors(scene, written(tmp_path / "t.csv", sampled(result, 20)))
-    part = 0.5 if name == "flat-rounded" else 0.2
+    found, comparison = errors(scene, written(tmp_path / "t.csv", sampled(result, 20)))
+    part = {"fretting-aluminium": 0.5, "flat-rounded": 1.0}.get(name, 0.2)
     assert max(comparison.a, comparison.m, comparison.n) < part * 2.2 / 19
+    assert all(getattr(comparison, key) <= found.estimate[key] for key in "amn")
 
 
 @pytest.mark.parametrize("name", SCENES[:4])
 def test_noise_is_seen_and_told(exact, tmp_path, name):
-    """One percent of p0 and of f p0 at every point: ends to a tenth of a spacing or so, and the estimate tells."""
+    """One percent of p0 and of f p0 at every point: ends to a tenth of a spacing or so. As noise hides what kind the
+    values are, and whether the end is blurred, the estimate is a spacing or two."""
     scene, result = exact[name]
     random = np.random.default_rng(3)
     off, told = [], []
@@ -83,7 +87,8 @@ def test_noise_is_seen_and_told(exact, tmp_path, name):
     assert len(off) >= 20  # of 30, the others not given
     assert np.median(off) < 0.15 * spacing
     assert max(off) < 2 * spacing
-    assert 0.3 < np.median(told) / np.median(off) < 10
+    assert all(error <= own for error, own in zip(off, told, strict=True))
+    assert 0.5 * spacing < np.median(told) < 2 * spacing
     assert found.settings["noise_over_p0"] == pytest.approx(0.01, rel=0.6)
 
 
