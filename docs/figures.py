@@ -110,11 +110,14 @@ def _cycle(figure: "Figure") -> None:
 
 
 def _adhered(figure: "Figure") -> None:
-    """Change of shear if nothing slips (1): shear force alone, no singularity at -a, and a change of sign there."""
+    """Change of shear if nothing slips (1): shear force alone, no singularity at -a, a change of sign, and tension
+    alone."""
     axes = figure.subplots()
     x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 803)[1:-1])
     for (ratio, text), style in zip(((0.0, "0"), (4 / np.pi, "4/π"), (4.0, "4")), _STYLES, strict=True):
         axes.plot(x, adhered(x, 1.0, 1.0, ratio), color="black", lw=1.4, ls=style, label=f"Δσ a/ΔQ = {text}")
+    alone = adhered(x, 1.0, 0.0, 1.0)
+    axes.plot(x, alone, color="0.55", lw=1.4, label="Δσ alone, Δq/Δσ")
     axes.set(ylim=(-1.5, 3), ylabel="a Δq/ΔQ")
     _finish(axes)
 

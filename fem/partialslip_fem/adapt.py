@@ -10,14 +10,14 @@ from partialslip.arrays import Array
 from partialslip.bars import BARS
 from partialslip.errors import InputError
 from partialslip.friction.coulomb_coupled import HALF
+from partialslip.friction.history import History
 from partialslip.friction.step_errors import more_steps, steps_matter
 from partialslip.friction.zone_ends import apart
-from partialslip.result import Clock
+from partialslip.result import Clock, Pace
 from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
 from partialslip_fem.goals import Goal, NextMesh, OutlineErrors, course, gaps, size_reached, worst
-from partialslip_fem.mesh_cost import Expense, MeshSize, march_in_more_steps
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
 from partialslip_fem.plates import compliance_error
 from partialslip_fem.problem import ScaledProblem
@@ -33,18 +33,13 @@ _MERGED = 0.1  # cost: of the smallest element: points nearer to each other are 
 # cost: of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
 _KINK_SLACK = 1.5
 _MOST_UNKNOWNS = 200_000  # limit: on a mesh from which no finer one is made
-_CHOICES = 13  # cost: accuracies tried, from the one asked for to the loosest, when an allowance does not suffice
 _MOST_CUTS = 16  # limit: meshes whose contact line cuts the contact; the next line is a tenth of a wider on both sides
 # cost: element size where bodies of unlike materials touch first, in half-widths over the accuracy: p is off there by
 # 0.03 times the size (measured). The mesh is refined where elements are larger than this many times
 _AT_FIRST, _FIRST_SLACK = 10.0, 3.0
 _AT_BENDS = 0.5  # cost: of the error at the ends: error of tractions where the gap's curvature jumps
 _OF_HALF = 0.01  # cost: element size at the corners of the second punch of pressing, in half-widths of the contact
-# cost: of the CPU seconds left: predicted seconds beyond them with which the scene's accuracy is tried nevertheless
-_OVERDRAFT = 0.3
-_FINER_BY = 2.0  # cost: of the accuracy that was reached: the next one is at least so much finer
-_CHECKED = 3.0  # cost: of following a load path: with the check of its steps, which are twice as many then
-_WORTH = 1.2  # cost: of the unknowns of the present mesh: a mesh with fewer is not worth solving on
+_WITH_ESTIMATE = 2  # cost: seconds of a mesh and of the second solution of its error estimate, in those of the mesh
 
 
 def adapt(
@@ -54,7 +49,6 @@ def adapt(
     clock: Clock,
     progress: Callable[[str], None],
     keep: Kept | None = None,
-    order_for: Callable[[float], int] | None = None,
 ) -> Adapted:
     """Refine until the ends are known to ``accuracy``, by the estimates of :mod:`partialslip_fem.estimate`.
 
@@ -63,9 +57,8 @@ def adapt(
     elements at the ends are small enough. Load steps are chosen on the first mesh that is fine enough and kept; the
     mesh is not refined to make up for their error.
 
-    With an allowance of CPU seconds the same meshes are made, as far as the allowance suffices. If it does not, the
-    accuracy is the best that it suffices for. What is left may be spent on finer meshes (:attr:`Clock.finest`). The
-    solution with the smallest estimate is returned.
+    With an allowance of CPU seconds the same meshes are made until the next one is not likely to fit, by the growth of
+    the last two; errors are estimated once at least. The solution with the smallest estimate is returned.
 
     Parameters
     ----------
@@ -80,27 +73,26 @@ def adapt(
         Called with one line after each mesh.
     keep : Kept, optional
         Condensed bodies of the first mesh, to reuse and to add to.
-    order_for : callable, optional
-        ``order_for(accuracy)``: order of the elements for a finer accuracy; default: the order of ``problem``.
 
     Raises
     ------
     InputError
         If the contact does not fit on a finite body, or wider and wider contact lines do not enclose it.
     """
-    refinement = _Refinement(problem, accuracy, width, clock, keep)
+    refinement, pace = _Refinement(problem, accuracy, width, clock, keep), Pace(clock)
     while True:
-        if settled := refinement.settle():
-            return settled
         refinement.solve_on_next_mesh()
         refinement.estimate_errors()
+        pace.took()
         progress(refinement.message())
         if refinement.finished:
             refinement.check_steps()
             if refinement.solution.enclosed:  # finer steps may lead to a wider contact
-                refinement.keep_best()
-                if not refinement.aim_finer(order_for or (lambda _: problem.order)):
-                    return refinement.best_of_all()
+                return refinement.best()
+        elif refinement.solution.enclosed and not pace.fits(1 if refinement.error < np.inf else _WITH_ESTIMATE):
+            return refinement.best()
+        elif clock.limited and refinement.error < np.inf:
+            refinement.keep_best()
         refinement.plan_next_mesh()
 
 
@@ -114,12 +106,8 @@ class _Refinement:
 
     def __init__(self, problem: ScaledProblem, accuracy: float, width: float, clock: Clock, keep: Kept | None) -> None:
         self.problem, self.clock = problem, clock
-        self.expense = Expense(clock, len(problem.parts))
         self.solution, self.meshes, self.factored = solve_on_first_mesh(problem, width, clock, keep, alone=True)
-        self.march_s = 0.0  # CPU seconds of contact and friction on the present mesh, once
-        self.expense.measure(self.solution, clock.phases["contact"] if self.meshes == 1 else 0.0)
-        self.best: Adapted | None = None
-        self.lowered = False  # whether the goal is less than the accuracy of the scene
+        self.kept: Adapted | None = None  # where seconds are limited: the best solution so far
         self.iterations = self.solution.iterations
         self.asked_width = self.width = width  # of the blocks, in contact half-widths: asked for, and of the next mesh
         self.limit = contact_line_limit(problem)
@@ -140,6 +128,7 @@ class _Refinement:
         self.path_errors: Mapping[str, float] = {}  # of the steps of coupled bodies
         self.path_moves = self.solution.path_moves
         self.plates_error: float | None = None  # None until it is estimated
+        self.other: History | None = None  # by elements of the neighbouring order, on the present mesh
         self.waited = self.cuts = 0
 
     @property
@@ -167,75 +156,37 @@ class _Refinement:
         known = f", {', '.join(self.errors)} known to {self.error:.1e} a" if self.error < np.inf else ""
         return f"mesh {self.meshes}: {self.solution.dofs:,} unknowns{known}"
 
-    @property
-    def _overdraft(self) -> float:
-        """CPU seconds beyond those left that the accuracy of the scene may be planned with."""
-        return max(_OVERDRAFT * self.clock.remaining(), self.clock.overdraft)
-
     def check_steps(self) -> None:
         """Check the load steps on the present mesh and estimate their errors anew, where steps matter: the mesh on
-        which they were chosen saw less of a stick zone that moves while the loads change."""
-        if not steps_matter(self.step_errors or {}, self.problem.accuracy) or not self._allows_marches(1):
+        which they were chosen saw less of a stick zone that moves while the loads change. Those of coupled bodies may
+        be too few as soon as the errors of pressing have fallen below theirs."""
+        if self.solution.coupled:
+            self._refine_steps()
+            return
+        if not steps_matter(self.step_errors or {}, self.problem.accuracy):
             return
         fine = self._solved_again()
         self.solution, self.step_errors = fine, fine.step_errors
         self.iterations += fine.iterations
-        self.expense.pass_over()
 
     def keep_best(self) -> None:
         """Keep the present solution if its estimated errors are smaller than those of the solutions before."""
         error = worst(self.errors)
-        if self.best and error >= worst(self.best.errors):
+        if self.kept and error >= worst(self.kept.errors):
             return
-        settled = max(self.problem.accuracy, error / goals.BAR) if self.expense.limited else None
-        self.best = Adapted(self.solution, self.errors, 0, 0, 0, self.width, settled, self.plates_error)
+        settled = max(self.problem.accuracy, error / goals.BAR) if self.clock.limited else None
+        self.kept = Adapted(self.solution, self.errors, 0, 0, 0, self.width, settled, self.plates_error, self.other)
 
-    def best_of_all(self) -> Adapted:
-        """The best solution, with the work on all meshes."""
-        assert self.best
+    def best(self) -> Adapted:
+        """The solution with the smallest estimate, which is made where there is none, and the work on all meshes."""
+        if self.error == np.inf and not self.kept:
+            self._estimate_together()
+            self.error = worst(self.errors)
+        if self.error < np.inf:
+            self.keep_best()
+        assert self.kept
         made, factored, iterations = self.meshes, self.factored, self.iterations
-        return replace(self.best, meshes=made, factorizations=factored, iterations=iterations)
-
-    def aim_finer(self, order_for: Callable[[float], int]) -> bool:
-        """Choose the finest accuracy beyond the present one that the rest of the allowance suffices for, as far as the
-        allowance goes; tell whether there is one."""
-        finest = max(self.clock.finest, worst(self.step_errors or {}), worst(self.path_errors))
-        most = min(self.goal.accuracy, self.error / goals.BAR) / _FINER_BY
-        if not finest <= most or self.error > self.bar:
-            return False
-        for accuracy in np.geomspace(finest, most, _CHOICES).tolist():
-            problem = replace(self.problem, accuracy=accuracy, order=order_for(accuracy))
-            goal = Goal.at(accuracy, problem)
-            least = goal.growth * (self.least / self.goal.growth if problem.order == self.problem.order else 1.0)
-            size = goal.element_size(self.solution, problem)
-            finer = 1.0 if size_reached(self.size, size) else self.finer
-            if self._affords(goal, problem, course(self.size, finer, size, least, problem.order)):
-                self.problem, self.goal, self.least, self.finer = problem, goal, least, finer
-                self.error_before = np.inf
-                return True
-        return False
-
-    def settle(self) -> Adapted | None:
-        """Choose the best accuracy that the rest of the allowance suffices for.
-
-        Returns the present solution if no affordable mesh is better; None to go on.
-        """
-        if not self.expense.limited:
-            return None
-        affordable = self._affordable_goal()
-        if self.end_errors and not affordable:
-            if self.error == np.inf and not self.best:
-                self._estimate_together()
-                self.error = worst(self.errors)
-            if self.error < np.inf:
-                self.keep_best()
-            return self.best_of_all()
-        if affordable and affordable is not self.goal:
-            self.least = self.least * affordable.growth / self.goal.growth
-            self.goal, self.lowered = affordable, True
-            if size_reached(self.size, self.goal.element_size(self.solution, self.problem)):
-                self.finer = 1.0
-        return None
+        return replace(self.kept, meshes=made, factorizations=factored, iterations=iterations)
 
     def solve_on_next_mesh(self) -> None:
         """Make the next mesh, solve on it, and choose the load steps on the first mesh that is fine enough."""
@@ -255,14 +206,10 @@ class _Refinement:
         self.eased = grading.eased is not None
         self.width = widened(self.asked_width, self.solution)
         self.block_width = self.width * a
-        expected = self._size(self.goal, problem, planned) if self.expense.limited else None
-        began = self.clock.phases["contact"]
         choose = self.step_errors is None and not self.path_errors and self.size <= goals.COARSEST
         self.solution = solving.mesh_and_solve(
             problem, self.block_width, grading, self.clock, None, choose, self.solution
         )
-        self.march_s = self.clock.phases["contact"] - began - self.solution.choosing_s
-        self.expense.measure(self.solution, self.march_s, expected, choose)
         if choose:
             self._keep_steps()
             self._refine_steps()
@@ -306,7 +253,6 @@ class _Refinement:
             or self.waited > _WAITS
         ):
             smooth = self._estimate_together()
-            self.expense.pass_over()  # a second solution is no part of the cost of a mesh
             self.error = worst(self.errors)
             times, power = _WANDERING if self.solution.wanders else (3, 0.5 / self.problem.order)
             self.calmer = float(np.clip((times * worst(smooth) / self.bar) ** -power, *_CALMER))
@@ -331,10 +277,9 @@ class _Refinement:
         if self.error < np.inf:
             self.error_before, self.least = self.error, self.least * self.calmer
 
-    def _grading(self, goal: Goal, order: int, mesh: NextMesh, filled: bool = True) -> Grading:
+    def _grading(self, goal: Goal, order: int, mesh: NextMesh) -> Grading:
         """Grading of the next ``mesh``, with elements of ``order``, on the way to ``goal``: to the zone ends of the
-        present solution, to the profile's kinks, and to kinks of q1 and q2; unless it is ``filled``, without the
-        intervals that the ends of the contact sweep."""
+        present solution, to the profile's kinks, and to kinks of q1 and q2."""
         solution, a, coarsest = self.solution, self.solution.half_width, self.coarsest
         margin = (0.1 + 2 * mesh.finer * mesh.size) * a  # for safety, and for the error of the present ends
         leftmost, rightmost = solution.reach
@@ -364,7 +309,7 @@ class _Refinement:
             refine(kink, needed, _KINK_SLACK)
         for kink in solution.passing:
             refine(kink, goals.PASSING * math.sqrt(goal.accuracy), _KINK_SLACK)
-        for low, high, wanted in goals.swept(solution, goal.accuracy) if filled else ():
+        for low, high, wanted in goals.swept(solution, goal.accuracy):
             size = wanted / coarsest
             count = int(np.ceil((high - low) / (2 * size * coarsest)))
             sizes |= {
@@ -385,37 +330,31 @@ class _Refinement:
 
     def _keep_steps(self) -> None:
         """Keep the load steps of the present solution for all meshes to come, and their errors."""
-        solution, problem = self.solution, self.problem
-        if solution.enclosed and solution.history and not solution.coupled:
+        solution = self.solution
+        if not solution.history or not (solution.coupled or solution.enclosed):
+            return
+        self.problem = replace(self.problem, path=replace(solution.history.path, before=None))
+        if not solution.coupled:
             self.step_errors = solution.step_errors
-            self.problem = replace(problem, path=replace(solution.history.path, before=None))
             self.goal = Goal.at(max(self.goal.accuracy, worst(self.step_errors)), self.problem)
 
     def _refine_steps(self) -> None:
-        """Take more load steps of coupled bodies for all meshes to come, as long as their errors count and the
-        allowance suffices."""
+        """Take more load steps of coupled bodies for all meshes to come, as long as their errors count and
+        CPU seconds are left."""
         while (path := self.problem.path) and (before := self.solution).path_errors:
             more = more_steps(path, before.path_errors, before.step_errors, self.problem.accuracy)
-            if not more or not self._allows_marches(more.substeps / path.substeps):
+            if not more or self.clock.remaining() <= 0:
                 return
             self.problem = replace(self.problem, path=more)
             self.solution = self._solved_again()
+            self.path_errors, self.path_moves = self.solution.path_errors, self.solution.path_moves
+            self._keep_steps()
             self.iterations += before.iterations
-            self.expense.march(self.solution, self.march_s)
 
     def _solved_again(self) -> MeshSolution:
         """Solve contact and friction once more on the present mesh, and check the load steps."""
-        before, began = self.solution, self.clock.phases["contact"]
-        found = solving.solve_contact(self.problem, before.bodies, before.factored, self.clock, True, before=before)
-        self.march_s = self.clock.phases["contact"] - began - found.choosing_s
-        return found
-
-    def _allows_marches(self, times: float) -> bool:
-        """Whether the allowance suffices to follow the load path in so many ``times`` as many steps as on the present
-        mesh, and to check these steps."""
-        coupled = self.solution.coupled and self.solution.history
-        work = march_in_more_steps(self.solution, times) if coupled else _CHECKED * times
-        return self.expense.allows(work * self.march_s, self._overdraft)
+        before = self.solution
+        return solving.solve_contact(self.problem, before.bodies, before.factored, self.clock, True, before=before)
 
     def _errors_of_ends(self, at_ends: Array, inside: Array, at_kinks: Array) -> dict[str, float]:
         """Errors due to elements of given sizes at ends, ``inside`` which these lie, and at kinks, to jumps of the
@@ -437,49 +376,5 @@ class _Refinement:
         smooth = estimate.smooth_errors(self.solution, other, self.eased, self.problem.breaks, corner)
         self.errors = estimate.combined(self.solution, smooth, self.end_errors)
         self.plates_error = compliance_error(self.problem, self.solution, other, self.errors["a"])
+        self.other = other.history
         return smooth
-
-    def _affordable_goal(self) -> Goal | None:
-        """The best goal, none beyond the present one, that the rest of the allowance suffices for.
-
-        None if the present solution, with its errors estimated, is about as good. As long as the goal is the accuracy
-        of the scene, the rest need suffice only for the next mesh with small elements (after the first mesh only for
-        the second), and only nearly: the course is a cautious one, and that mesh may be the last.
-        """
-        solution, problem = self.solution, self.problem
-        order = problem.order
-        done = bool(self.end_errors) and solution.enclosed
-        best: Goal = self.goal
-        asked = self.goal.accuracy
-        for accuracy in np.geomspace(asked, max(goals.LOOSEST, asked), _CHOICES).tolist():
-            best = self.goal if accuracy == asked else Goal.at(accuracy, problem)
-            size_goal = best.element_size(solution, problem)
-            finer = self.finer if best is self.goal or not size_reached(self.size, size_goal) else 1.0
-            meshes = course(self.size, finer, size_goal, self.least * best.growth / self.goal.growth, order)
-            if (
-                done
-                and best is not self.goal
-                and self._size(best, problem, meshes[-1]).unknowns < _WORTH * solution.dofs
-            ):
-                return None
-            if best is self.goal and not (self.lowered or self.best):
-                fine = 1 + sum(mesh.size > goals.COARSEST for mesh in meshes)
-                meshes = meshes[: fine if self.end_errors else 1]  # what the first mesh tells is rough
-                if self._affords(best, problem, meshes, self._overdraft):
-                    return best
-            elif self._affords(best, problem, meshes):
-                return best
-        return None if done else best
-
-    def _affords(self, goal: Goal, problem: ScaledProblem, meshes: list[NextMesh], beyond: float = 0.0) -> bool:
-        """Whether the rest of the allowance, and ``beyond`` more seconds, suffice for ``meshes`` and the estimate."""
-        sizes, order = [self._size(goal, problem, mesh) for mesh in meshes], problem.order
-        return self.expense.affords(sizes, order, estimate.NEIGHBOUR[order], problem.inside, beyond)
-
-    def _size(self, goal: Goal, problem: ScaledProblem, mesh: NextMesh) -> MeshSize:
-        """Predicted size of a ``mesh`` on the way to ``goal``."""
-        grading = self._grading(goal, problem.order, mesh, filled=False)
-        least = min(grading.sizes.values())
-        wanted = goals.swept(self.solution, goal.accuracy)
-        swept = [(low, high, max(size, least)) for low, high, size in wanted]
-        return self.expense.size(grading, problem.order, self.width * self.solution.half_width, swept)

@@ -102,10 +102,14 @@ def _strain_beyond(u: PPoly, end: float, side: int) -> float:
 
     The strain is c_0 + c_1 r^(1/2) + c_2 r + ... at the distance r, which polynomials do not follow. Means over cells
     are far more accurate than point values: the series is fitted to the means of the cells next to the cell at the end.
+    Where a mesh has fewer cells than terms there, the series is shorter; where it has none, the element at the end
+    tells the strain.
     """
     distance = np.sort(side * (u.x - end))
     distance = distance[distance > 0][1 : _CELLS + 2]
-    powers, scale = np.arange(_TERMS) / 2, distance[-1]
+    if len(distance) <= 1:
+        return float(inside_elements(u.derivative(), np.array([end]))[0])
+    powers, scale = np.arange(min(_TERMS, len(distance) - 1)) / 2, distance[-1]
     grown = (distance[:, None] / scale) ** (powers + 1) / (powers + 1)
     means = np.diff(u(end + side * distance)) * side
     weights = 1 / np.diff(distance)

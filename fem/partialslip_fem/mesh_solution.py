@@ -72,8 +72,6 @@ class MeshSolution:
         Points where q has a kink at single load points, but neither q1 nor q2 has.
     trail : Trail or None
         Which nodes of coupled bodies touch and slip in each step.
-    choosing_s : float
-        CPU seconds spent on the choice of load steps and on their errors: finer meshes take the same steps.
     fits : (e,) array
         Distances between the ends of the contact that many and few vertices of the mesh tell, of the 2 ends at load
         point 2 and the ``ends_at_1``: errors of the fit.
@@ -102,7 +100,6 @@ class MeshSolution:
     path_moves: Array = field(default_factory=lambda: np.zeros((2, 2)))
     dissimilar: bool = False
     relative: Relative | None = None
-    choosing_s: float = 0.0
     fits: Array = field(default_factory=lambda: np.zeros(2))
 
     @property
@@ -303,6 +300,8 @@ class Adapted:
         Accuracy that the allowance of CPU seconds sufficed for; None without an allowance.
     plates_error : float or None
         Estimated error of the compliance of the plates, relative.
+    other : History or None
+        Of elements of the neighbouring order on the same mesh; None if there is none.
     """
 
     solution: MeshSolution
@@ -313,3 +312,4 @@ class Adapted:
     width: float
     settled: float | None = None
     plates_error: float | None = None
+    other: History | None = None

@@ -2,10 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
-from msgspec.structs import replace as replace_fields
 
 from partialslip.allowance import Allowance
 from partialslip.errors import InputError
@@ -53,8 +51,7 @@ def solve(
         Condensed bodies to reuse, and to add the new ones to: of all meshes where the element size is given, otherwise
         of the first mesh.
     allowance : Allowance, optional
-        CPU seconds that the refinement may take. If they do not suffice for the accuracy of the scene, the best
-        accuracy within the allowance is chosen.
+        CPU seconds that the refinement may take: no mesh is begun that is not likely to fit.
 
     Raises
     ------
@@ -73,8 +70,7 @@ def solve(
     with clock.phase("mesh"):
         problem = scaled(scene, plan, start)
     if scene.fem.size is None and not scene.meshed:
-        accuracy, order_for = scene.fem.accuracy, partial(_order_for, scene)
-        adapted = adapt(problem, accuracy, width, clock, progress, None if allowance else keep, order_for)
+        adapted = adapt(problem, scene.fem.accuracy, width, clock, progress, None if allowance else keep)
         problem = replace(problem, order=adapted.solution.lower.order)
     else:
         adapted = uniform(problem, scene.fem.size, width, clock, keep)
@@ -94,11 +90,6 @@ def solve_meshed(scene: Scene, plan: Plan, meshes: Sequence[Mesh]) -> Result:
     solution = solve_on_meshes(in_lengths, problem, width, clock, check=True)
     adapted = Adapted(solution, {}, 1, solution.factored, solution.iterations, width / solution.half_width)
     return to_result(scene, plan, problem, adapted, clock)
-
-
-def _order_for(scene: Scene, accuracy: float) -> int:
-    """Order of the elements for ``accuracy``."""
-    return replace_fields(scene.fem, accuracy=accuracy).elements
 
 
 def _check_incompressibility(scene: Scene) -> None:

@@ -3,6 +3,7 @@
 A is the compliance of the pair of bodies, R the profile's radius and P the normal force per unit depth.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -113,11 +114,7 @@ class Part:
     @property
     def held(self) -> HeldSides:
         """Lines of the mesh that are held along x, and along y."""
-        if not self.finite:
-            return ALL_AROUND, ALL_AROUND
-        free = ["right"] if self.pulled and not self.gripped else []
-        along_x, along_y = ([line for line in lines if line not in free] for lines in _HELD[self.support])
-        return along_x, along_y
+        return _held(self.support, self.pulled and not self.gripped) if self.finite else (ALL_AROUND, ALL_AROUND)
 
     @cached_property
     def exponents(self) -> dict[Corner, float]:
@@ -380,6 +377,13 @@ def rescaled(polynomials: PPoly, value: float, length: float, origin: float = 0.
     return PPoly(polynomials.c * value / length**powers, polynomials.x * length + origin)
 
 
+def _held(support: Support, pulled: bool) -> HeldSides:
+    """Lines of a finite body that its ``support`` holds along x, and along y; not the right side, if it is ``pulled``
+    by a traction."""
+    along_x, along_y = ([line for line in lines if line != "right" or not pulled] for lines in _HELD[support])
+    return along_x, along_y
+
+
 def _finite(plain: Part, body: Body | None, scene: Scene, L: float) -> Part:
     """Replace the half-plane ``plain`` by the finite ``body``, if there is one."""
     if not body:
@@ -388,7 +392,7 @@ def _finite(plain: Part, body: Body | None, scene: Scene, L: float) -> Part:
     face = PadFace(scene.profile, L) if body.kind == "pad" else None
     part = replace(plain, face=face, support=body.support, pulled=body.pulled, gripped=body.gripped)
     if body.mesh is not None:
-        needed = {line for lines in part.held for line in lines} | ({"right"} if body.pulled else set())
+        needed = {*itertools.chain(*_held(body.support, False))} | ({"right"} if body.pulled else set())
         field = f"bodies.{part.name}.mesh"
         return replace(part, mesh=read(field, body.mesh, (body.unit or 1.0) / L, face, sorted(needed)))
     return replace(

@@ -1,15 +1,17 @@
 """The result of the last mesh, in SI units: tractions, zones, certificate, estimates, counts, notes."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.friction.history import certificate, last_cycle_change
+from partialslip.friction.history import History, certificate, last_cycle_change
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import doubts, steady_state, steps_of_coupled
 from partialslip.friction.restart import begun, end_state
 from partialslip.friction.step_errors import summed
+from partialslip.friction.work import work, work_error
 from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.plates import Plates
@@ -87,7 +89,7 @@ def to_result(
     )
     return replace(
         Result.of("fem", found, solution.half_width * L, p0 * stress, traction, clock),
-        slip=Slip(x * L + origin, history.slip * unit, history.dissipated * unit * scene.P) if history else None,
+        slip=_slip(history, adapted.other, estimate, x * L + origin, unit, scene.P) if history else None,
         settings={
             "bodies": _bodies(solution, problem),
             "elements": f"P{problem.order}",
@@ -111,12 +113,20 @@ def to_result(
         contact_ends=((left1 * L + origin, right1 * L + origin), (left2 * L + origin, right2 * L + origin)),
         state=_state(scene, problem, solution, estimate if adapted.errors else {}),
         stress_at=StressAt(BodyStresses.of(scene, problem, solution).inside) if known_inside else None,
-        undetermined={"stresses": _SLIDES} if inside and not known_inside else {},
+        undetermined={**found.undetermined, **({"stresses": _SLIDES} if inside and not known_inside else {})},
         surface=along_surfaces(displaced, solution.contact_ends, L, stress, origin) if displaced else None,
         edges=edges_near_contact(solution, L, origin),
         plates=plates,
         right_grip=_right_grip(problem, solution, scene.P),
     )
+
+
+def _slip(
+    history: History, other: History | None, errors: Mapping[str, float], x: Array, unit: float, P: float
+) -> Slip:
+    """Slip at ``x`` and work of friction; ``unit`` (m) is that of displacements."""
+    off = work_error(history, other, errors)
+    return Slip(x, history.slip * unit, work(history) * unit * P, None if off is None else off * unit * P)
 
 
 def _right_grip(problem: ScaledProblem, solution: MeshSolution, P: float) -> Array | None:
@@ -130,11 +140,15 @@ def _plates(problem: ScaledProblem, adapted: Adapted, scene: Scene) -> Plates | 
     """Plates of two finite bodies, in SI units."""
     if not (found := plates_of(problem, adapted.solution)):
         return None
-    A, P = scene.material.A, scene.P
+    A, P, load = scene.material.A, scene.P, scene.load
     off = displacement_error(adapted.solution, found, adapted.plates_error)
+    moved = A * P * found.displacement
+    if load.displacement is not None:  # known, however many cycles were skipped: less what the spring gives way
+        given = np.array(load.driving) - (P * found.at_points / load.spring if load.spring else 0.0)
+        moved = given[list(load.ends)]
     return Plates(
         at_points=P * found.at_points,
-        displacement=A * P * found.displacement,
+        displacement=moved,
         approach=A * P * found.approach,
         compliance=A * found.compliance,
         loop=found.loop * [A * P, P],

@@ -1,6 +1,5 @@
 """Solving a problem on one mesh of each body: mesh, condense, contact and friction, zones."""
 
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -19,6 +18,7 @@ from partialslip.friction.normal import Presses
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
+from partialslip.friction.work import told_by_finer
 from partialslip.friction.zone_ends import NEAREST, VERTICES, within
 from partialslip.result import Clock
 from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies
@@ -166,7 +166,7 @@ def solve_contact(
         return MeshSolution(
             bodies, factored, nodes, forces.pressing, forces.most, history, left, right, stick, ends_at_1, kinks, both,
             forces.pressed, errors, forces.first, problem.contact_moves, problem.largest, passing, forces.trail,
-            path_errors, forces.path_moves, both and problem.beta != 0, kept, forces.choosing_s, fits,
+            path_errors, forces.path_moves, both and problem.beta != 0, kept, fits,
         )  # fmt: skip
 
 
@@ -195,7 +195,6 @@ class _ContactForces:
     first: Array | None = None
     trail: Trail | None = None
     path_moves: Array = field(default_factory=lambda: np.zeros((2, 2)))
-    choosing_s: float = 0.0
 
 
 def _contact_forces(
@@ -238,15 +237,13 @@ def _contact_forces(
         nodes = np.flatnonzero(history.bound > 0)
         most = np.max([pressing.x, *history.pressures, *history.around.pressures], axis=0)
         left: step_errors.Errors = {}
-        moves, began = np.zeros((2, 2)), time.process_time()
+        moves = np.zeros((2, 2))
         if check and path.moves:
             other = step_errors.other_steps(path), pressed, replace(along, trail=None), near, pivot
             finer, *_ = coulomb_coupled.march(*loaded, *other)
             left, moves = _path_errors(problem, line, history, finer), step_errors.of_plates(history, finer)
-        choosing = time.process_time() - began
-        return _ContactForces(
-            pressing, most, history.of(nodes), nodes, first, left, None, trail, moves, choosing_s=choosing
-        )
+            history = told_by_finer(history, finer)
+        return _ContactForces(pressing, most, history.of(nodes), nodes, first, left, None, trail, moves)
     opened = gap if path else gap - problem.strains[1][0] * stretch[1]
     arms = line.x if problem.turns else None
     if problem.pressing:
@@ -294,7 +291,6 @@ def _under_varying_pressure(
     line, path, history, holding = lower.body, problem.path, None, presses
     first, second = (presses(*loads) for loads in pressing)
     left: step_errors.Errors = {}
-    choosing = 0.0
     if path:
         assert C.xx is not None
         if problem.start:
@@ -308,16 +304,7 @@ def _under_varying_pressure(
         moved = np.array([lower.stretch[0], stretched(line.x, problem.origin)[1]])
         f = problem.f_at(line.x)
 
-        taken: dict[bool, float] = {}  # CPU seconds of the longest march event by event, and of that in steps
-
         def along(path: Path) -> History:
-            began = time.process_time()
-            try:
-                return follow(path)
-            finally:
-                taken[path.followed] = max(time.process_time() - began, taken.get(path.followed, 0.0))
-
-        def follow(path: Path) -> History:
             return coulomb_varying_pressure.march(line.x, C.xx, moved, f, holding, path, problem.order)  # type: ignore[arg-type]
 
         def errors(history: History, gradual: History) -> step_errors.Errors:
@@ -325,12 +312,10 @@ def _under_varying_pressure(
             zones = stick_zone_of(line, on[0], history.of(on[0])), stick_zone_of(line, on[1], gradual.of(on[1]))
             return step_errors.of_steps(history, gradual, zones, line.weights, half_width)
 
-        began = time.process_time()
         history, left = follow_or_step(along, path, problem.accuracy, errors if check else None)
-        choosing = time.process_time() - began - taken[history.path.followed]
     done = [*presses.solutions, *(holding.solutions if holding is not presses else [])]
     most = np.maximum.reduce([each.x for each in done])
     together = replace(certified(done), x=second.x, rest=second.rest)
     nodes = np.flatnonzero((first.x > 0) | (second.x > 0))
     history = history.of(nodes) if history else None
-    return _ContactForces(together, most, history, nodes, None, left, first.x, choosing_s=choosing)
+    return _ContactForces(together, most, history, nodes, None, left, first.x)

@@ -42,20 +42,24 @@ def quiet() -> Iterator[io.StringIO]:
             yield printed
 
 
-def check_files(path: str | os.PathLike[str], named: str) -> None:
-    """Raise InputError if ``path``, or a file that it refers to, cannot be read or is not a regular file: meshio would
-    wait for a pipe, and read a device without end. ``named`` is the name of ``path`` in messages."""
-    found = {Path(path): named}
+def check_files(path: str | os.PathLike[str], named: str) -> list[bytes]:
+    """Return the texts of ``path`` and of the files that it refers to, of formats that refer to files.
+
+    Raise InputError if one of them cannot be read or is not a regular file: meshio would wait for a pipe, and read a
+    device without end. ``named`` is the name of ``path`` in messages."""
+    found, texts = {Path(path): named}, list[bytes]()
     for file, its in (unseen := list(found.items())):
         with opened(file, LARGEST_MESH, its) as content:
             pattern = _REFERS.get(file.suffix.lower())
             text = content.read() if pattern else b""
+        texts += [text] if pattern else []
         for other in _referred(file, pattern, text) if pattern else ():
             if other not in found:
                 found[other] = f"{named}: {other}"
                 unseen.append((other, found[other]))
         if len(found) > _MOST:
             raise InputError(f"{named}: cannot be read: refers to more than {_MOST} files")
+    return texts
 
 
 def _referred(file: Path, pattern: re.Pattern[bytes], text: bytes) -> Iterator[Path]:

@@ -8,6 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.errors import InputError, MissingLibraryError
+from partialslip.inputfile import LARGEST_MESH, read_bytes
+from partialslip_meshes import deck
 from partialslip_meshes.files import check_files, quiet
 from partialslip_meshes.mesh import Mesh
 
@@ -105,9 +107,16 @@ def _refusal(name: str, path: str) -> Refuse:
 
 
 def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
-    if Path(path).suffix.lower() not in READ_FORMATS:
+    if (suffix := Path(path).suffix.lower()) not in READ_FORMATS:
         refuse(f"must be a file {', '.join(READ_FORMATS[:-1])} or {READ_FORMATS[-1]}")
-    check_files(path, f"{name} = {path!r}")
+    texts = check_files(path, f"{name} = {path!r}")
+    if suffix == ".inp" and (wrong := deck.fault(texts, BOUNDARY_NAMES)):
+        refuse(wrong)
+    if suffix == ".msh":
+        text = read_bytes(path, LARGEST_MESH)
+        for section in (b"$Nodes", b"$Elements"):
+            if (count := text.count(b"\n" + section)) > 1:  # meshio keeps the last one
+                refuse(f"must have one section {section.decode()}, not {count}")
     printed, damaged = "", "the file is damaged or of another format"
     try:
         # meshio prints what is wrong and exits
@@ -251,8 +260,8 @@ def _edges_of(found: "meshio.Mesh", name: str) -> Iterator[_Indices]:
                 yield ends[np.isin(data[key][block], list(wanted))]
         if name in data:
             yield ends[np.asarray(data[name][block]).reshape(len(ends), -1).any(axis=1)]
-        if name in sets and sets[name][block] is not None:
-            yield ends[np.asarray(sets[name][block], dtype=np.int64)]
+        if len(members := sets.get(name, ())) > block and members[block] is not None:
+            yield ends[np.asarray(members[block], dtype=np.int64)]
 
 
 def _nodes_of(found: "meshio.Mesh", name: str) -> Iterator[_Indices]:

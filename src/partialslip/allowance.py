@@ -2,6 +2,7 @@
 
 import math
 import time
+import warnings
 from collections.abc import Callable
 
 from partialslip.errors import InputError
@@ -16,12 +17,8 @@ class Allowance:
         CPU seconds of this process and of its meshing processes.
     spent : callable, optional
         ``spent() -> float``: CPU seconds of this process up to now.
-    finest : float, optional
-        Accuracy, as a fraction of a, up to which finite elements spend the seconds that the accuracy of the scene
-        leaves; default: none.
-    overdraft : float, optional
-        CPU seconds beyond ``seconds`` that finite elements may plan with to reach the accuracy of the scene, as their
-        predictions are too high at times.
+    finest, overdraft : float, optional
+        Deprecated, without effect.
 
     Raises
     ------
@@ -33,12 +30,14 @@ class Allowance:
         self,
         seconds: float,
         spent: Callable[[], float] = time.process_time,
-        finest: float = math.inf,
-        overdraft: float = 0.0,
+        finest: float | None = None,
+        overdraft: float | None = None,
     ) -> None:
         if math.isnan(seconds):
             raise InputError(f"allowance of {seconds} s: must be a number of CPU seconds")
-        self.seconds, self.finest, self.overdraft = seconds, finest, overdraft
+        if finest is not None or overdraft is not None:
+            warnings.warn("Allowance: finest and overdraft have no effect any more", DeprecationWarning, stacklevel=2)
+        self.seconds = seconds
         self._spent = spent
         self._began = spent()
         self._elsewhere = 0.0

@@ -14,9 +14,10 @@ from partialslip.allowance import Allowance
 from partialslip.bars import LARGEST, Accuracy, Asked, asked
 from partialslip.errors import InputError
 from partialslip.frame import frame
-from partialslip.halfplane.method import spacing_error
+from partialslip.halfplane.method import has_closed_form, spacing_error
 from partialslip.halfplane.noise import Noise, noise_of
 from partialslip.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
+from partialslip.judge.known import estimated
 from partialslip.judge.outcome import missed_by
 from partialslip.judge.reference import ALL_EFFECTS, reference, reference_among
 from partialslip.methods import METHODS
@@ -87,10 +88,15 @@ class Run(ByMethod[Result], Drawn):
     @property
     def answering(self) -> str:
         """Name of the method whose result answers: the reference of the scene if it is among the methods; of finite
-        bodies fem, then equivalent half-planes; else the first."""
+        bodies fem, then equivalent half-planes; else the first. Of half-planes a result that claims to hold and tells
+        its errors goes before one that does not."""
         best = reference(self.scene).method
         wanted = (best, "equivalent") if self.scene.finite else (best,)
-        return next((name for name in wanted if name in self.results), next(iter(self.results)))
+        names = [name for name in (*wanted, *self.results) if name in self.results]
+        if self.scene.finite:
+            return names[0]
+        telling = (name for name in names if name == best or not self.results[name].path_dependent)
+        return next((name for name in telling if estimated(self.results[name], name)), names[0])
 
     @cached_property
     def noise(self) -> Noise | None:
@@ -191,7 +197,7 @@ def default_methods(scene: Scene) -> tuple[str, ...]:
     if scene.bodies.equivalent is not None:
         return ("exact", "equivalent")
     if scene.finite:
-        return ("exact" if scene.load.in_phase else "march", "fem")
+        return ("exact" if scene.load.in_phase and has_closed_form(reduced(scene)) else "march", "fem")
     return (reference(scene).method, "fem")
 
 

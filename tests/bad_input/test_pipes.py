@@ -149,7 +149,7 @@ OPENERS = {
     "inputfile",  # files of users
     "ledger", "state",  # to write
     "origin", "memory",  # of the packages and of the operating system
-    "reading", "book", "problem", "prices", "gradual_table",  # data of the package
+    "reading", "book", "problem", "gradual_table",  # data of the package
     "ending",  # the null device
     "process", "calculix", "neutral", "moose", "run_getfem", "run_kratos", "run_opensees",  # in folders made here
 }  # fmt: skip

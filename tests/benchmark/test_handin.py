@@ -116,11 +116,42 @@ def piped(folder):
     os.mkfifo(folder / "pipe.inp")
 
 
+def alone(**new):
+    """The same as :func:`changed_answer`, without the table, which would differ."""
+    return lambda folder: ((folder / "PS-02.csv").unlink(), changed_answer(**new)(folder))
+
+
+def coarser(**new):
+    """A ladder whose first mesh has other values."""
+
+    def change(folder):
+        values = json.loads((folder / "PS-02.json").read_text("utf-8"))["values"]
+        rungs = [{"h": 4 / 2**k, "values": values | (new if k == 0 else {})} for k in range(3)]
+        changed_answer(ladder=rungs)(folder)
+
+    return change
+
+
 OTHER = "0" * 64
 RUNG = {"h": 0.04, "values": {}}
 SPOILED = {
     "no author": (without_meta("author"), r"meta.toml: author = '': must be who ran the code"),
     "blank author": (changed_meta(author="  "), r"meta.toml: author = '  ': must be who ran the code"),
+    "author that nobody sees": (changed_meta(author="\u200b"), r"meta.toml: author = .*: must be who ran the code"),
+    "blank code": (changed_meta(code=" "), r"meta.toml: code = ' ': must be the name of the code"),
+    "code that nobody sees": (changed_meta(code="\u200b"), r"meta.toml: code = '.u200b': must be the name of the code"),
+    "blank note": (lambda folder: ((folder / "PS-02.csv").unlink(), changed_answer(values={}, note="\u200b ")(folder)),
+                   r"values: must have a value, or note must say why"),
+    "negative a": (alone(a=-2e-4), r"PS-02.json: values.a = -0.0002: must be > 0"),
+    "no pressure": (alone(p_max=0), r"PS-02.json: values.p_max = 0: must be > 0"),
+    "negative slip": (alone(slip=-6e-7), r"PS-02.json: values.slip = -6e-07: must be > 0"),
+    "negative energy": (alone(dissipated=-6e-3), r"PS-02.json: values.dissipated = -0.006: must be > 0"),
+    "tension": (alone(**{"p@0": -4e8}), r"PS-02.json: values.p@0 = -400000000: must be >= 0: pressure is positive"),
+    "ends in the wrong order": (alone(m=-1.1e-4), r"values.n = .*: must be >= -m = 0.00011, the left end"),
+    "negative a on a coarse mesh": (coarser(a=-2e-4), r"PS-02.json: ladder.0..values.a = -0.0002: must be > 0"),
+    "value in mm on a coarse mesh": (coarser(a=0.2), r"PS-02.json: ladder.0..values.a = 0.2: must be within"),
+    "no unknowns": (lambda folder: written("PS-02.json", '{"values": {"a": 2e-4}, "unknowns": 0}')(folder),
+                    r"PS-02.json: unknowns: must be >= 1"),
     "no version": (without_meta("version"), r"meta.toml: version: missing"),
     "empty version": (changed_meta(version=""), r"meta.toml: version = '': must be the version of the code"),
     "no settings": (without_meta("settings"), r"meta.toml: settings = '': must be elements and contact in words"),

@@ -100,6 +100,7 @@ def test_an_exact_run_says_what_it_found(exact):
         "m, n: 0.6324555 a, 0.6324555 a",
         "a: 1 mm",
         "p0: 400 MPa",
+        "p_max: 400 MPa",
         "largest |q1|: 154.9193 MPa",
         "largest |q2|: 154.9193 MPa",
         "largest sigma_xx, 1: 309.8387 MPa at x = -1 mm",
@@ -337,3 +338,23 @@ def test_a_reader_that_has_gone_brings_no_traceback():
     done = subprocess.run([sys.executable, "-c", code], stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
     os.close(writer)
     assert "Error" not in done.stderr
+
+
+def test_a_contact_that_ratchets_ends_with_4_and_prints_no_stick_zone(capsys):
+    loads = ["load.Q=[69115, 257610]", "load.sigma=[2e8, 1e9]", "load.cycles=6", "fem.accuracy=1e-2"]
+    settings = [word for each in loads for word in ("--set", each)]
+    assert main(["run", "hertz-large-tension", "--with", "exact,march", *settings, "--json"]) == 4
+    written = json.loads(capsys.readouterr().out)
+    assert {method["regime"] for method in written["methods"].values()} == {"ratchets"}
+    assert written["outcome"] == "not judged"
+    assert {"p0", "p_max"} < written["methods"]["exact"].keys()
+
+
+def test_ends_whose_errors_are_not_estimated_are_named():
+    from known import result
+
+    from partialslip.cli.run import _reached
+
+    assert _reached(result(estimate={"a": 1e-5, "m": 2e-5, "n": 3e-5})) == "fem: a, m and n known to 3.0e-05 a"
+    assert _reached(result(estimate={"a": 1e-5})) == "fem: a known to 1.0e-05 a, no error estimate of m and n"
+    assert _reached(result(estimate={})) == "fem: no error estimate of a, m and n"

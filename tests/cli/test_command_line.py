@@ -56,13 +56,6 @@ def test_help_describes_shows_and_says_how_it_ends(words):
     assert all(action.help for action in COMMANDS[words]._actions if not isinstance(action, argparse._SubParsersAction))
 
 
-@pytest.mark.parametrize(("upper", "advised"), [("72.8e9", True), ("210e9", False)])
-def test_a_budget_too_small_advises_exact_where_it_solves_the_scene(refused, upper, advised):
-    materials = f"material={{upper={{E={upper},nu=0.3}},lower={{E=72.8e9,nu=0.3}}}}"
-    said = refused("run", "hertz-shear", "--set", materials, "--budget", "0.01s")
-    assert ("--with exact" in said) == advised
-
-
 def test_negative_numbers_are_values():
     """Not options that argparse knows nothing of."""
     found = parser().parse_args(["score", "hertz-shear", "t.csv", "--factors", "-1,1e-3,-.5", "--bar", "-1e-3"])

@@ -72,7 +72,7 @@ def test_mean_load_bounded_by_gross_sliding_alone(monkeypatch, red):
     )
     outcome = partialslip.run(scene, ["exact", "march"])
     assert {result.regime for result in outcome.results.values()} == {"ratchets"}
-    assert outcome.passed
+    assert outcome.conclusion.unjudged == ("m", "n", "q")  # there is no steady state
     red.passes(len(outcome.comparisons["march"].missed), 0)
     monkeypatch.setattr(loading.Loading, "mean_load_bound", property(lambda _: 1 - 0.3))
     results = {**partialslip.run(scene, ["exact"]).results, "march": outcome.results["march"]}

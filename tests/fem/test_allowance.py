@@ -3,7 +3,8 @@
 import pytest
 
 from partialslip import Allowance, InputError, load_scene, plan, run
-from partialslip_fem import estimate, mesh_cost, solve, solving
+from partialslip.result import Clock, Pace
+from partialslip_fem import estimate, solve, solving
 
 ASKED = 1e-6
 SCENE = load_scene("hertz-small-tension", [f"fem.accuracy={ASKED!r}"])
@@ -62,56 +63,36 @@ def test_what_is_spent_after_the_first_mesh_gives_a_coarser_answer_that_says_so(
 
 
 @pytest.mark.slow
-def test_what_is_allowed_is_kept_and_buys_accuracy(counter):
+def test_what_is_allowed_buys_accuracy(counter):
+    """More allowance is never worse; the last mesh and its estimate may exceed it by what their growth left unknown."""
     reached = []
     for allowed in (20, 40, 80):
         counter.seconds = 0.0
         reached.append(fem(Allowance(allowed * SECONDS, counter)).settings["accuracy"])
-        assert counter.seconds <= 1.1 * allowed * SECONDS
-    assert reached[0] > reached[1] > reached[2]
+        assert counter.seconds <= 1.5 * allowed * SECONDS
+    assert reached[0] >= reached[1] >= reached[2] < reached[0]
 
 
-@pytest.mark.parametrize(
-    "loads",
-    [[], ["load.P=[100e3, 135750]"], pytest.param(["material.upper={E=150e9, nu=0.3}"], marks=pytest.mark.slow)],
-)
-def test_the_work_of_a_run_without_an_allowance_suffices_for_its_errors(counter, loads):
-    """Load steps are refined and checked, and meshes made, as without an allowance."""
-    scene = load_scene("fretting-aluminium", [*loads, "fem.accuracy=1e-3"])
-    free = solve(scene, plan(scene))
-    allowed, counter.seconds = counter.seconds, 0.0
-    limited = solve(scene, plan(scene), allowance=Allowance(allowed, counter))
-    assert limited.estimate == free.estimate
-    assert limited.counts == free.counts
-
-
-def test_seconds_that_are_left_buy_accuracy_up_to_the_finest(counter):
-    scene = load_scene("hertz-shear", ["fem.accuracy=1e-3"])
-    free, spent = solve(scene, plan(scene)), counter.seconds
-    found = {}
-    for times, finest in ((1, 1e-5), (1000, 1e-5), (1000, float("inf"))):
-        counter.seconds = 0.0
-        found[times, finest] = solve(scene, plan(scene), allowance=Allowance(times * spent, counter, finest))
-        assert counter.seconds <= 1.1 * times * spent
-    assert found[1, 1e-5].estimate == found[1000, float("inf")].estimate == free.estimate
-    assert max(found[1000, 1e-5].estimate[key] for key in "amn") <= 1e-5 == found[1000, 1e-5].settings["accuracy"]
-
-
-def test_the_finest_accuracy_is_priced_where_the_contact_moves(counter):
-    """Its meshes would have a million vertices in what the ends of the contact sweep."""
-    scene = load_scene("fretting-aluminium", ["load.P=[100e3, 135750]", "fem.accuracy=1e-2"])
-    free = solve(scene, plan(scene))
-    allowed, counter.seconds = 4 * counter.seconds, 0.0
-    limited = solve(scene, plan(scene), allowance=Allowance(allowed, counter, 1e-9))
-    assert counter.seconds <= 1.1 * allowed
-    assert max(limited.estimate.values()) <= max(free.estimate.values())
+def test_meshes_grow_as_the_last_two_did():
+    """The next mesh fits if the seconds that are left suffice for it; nothing is limited without an allowance."""
+    seconds = [0.0]
+    pace = Pace(Clock(Allowance(10.0, lambda: seconds[0])))
+    for spent, needs in ((1.0, 1.0), (2.0, 4.0), (1.0, 1.0)):
+        seconds[0] += spent
+        pace.took()
+        left = 10.0 - seconds[0]
+        assert pace.fits(0.99 * left / needs)
+        assert not pace.fits(1.01 * left / needs)
+    free = Pace(Clock())
+    free.took()
+    assert free.fits(1e9)
 
 
 @pytest.mark.fault
-def test_meshes_taken_to_cost_nothing(counter, monkeypatch):
-    monkeypatch.setattr(mesh_cost, "_work", lambda _: 1e-9)
+def test_meshes_taken_to_fit_always(counter, monkeypatch):
+    monkeypatch.setattr(Pace, "fits", lambda *_: True)
     fem(Allowance(5 * SECONDS, counter))
-    assert counter.seconds > 1.1 * 5 * SECONDS
+    assert counter.seconds > 1.5 * 5 * SECONDS
 
 
 def test_seconds_elsewhere_count():

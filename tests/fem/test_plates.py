@@ -1,5 +1,6 @@
 """Plates of finite bodies: their stiffness against another element family, their displacements as loads, energy."""
 
+import dataclasses
 from functools import partial
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from partialslip.equivalent import stand_ins
 from partialslip.export.model import outlined
 from partialslip.friction import coulomb_coupled
 from partialslip.result.record import PlatesRecord
+from partialslip.run import default_methods
+from partialslip.scene import Bodies
 from partialslip.scene.writing import scene_toml
 from partialslip.verify.hard_cases.scenes import hard_scene
 from partialslip_fem import first_mesh, plates
@@ -335,3 +338,43 @@ def test_a_run_of_moved_plates_is_recorded_and_read_back(tmp_path, monkeypatch, 
     assert kept.scene.load.Q_found == plates.at_points
     again = run(kept.scene, "fem")["fem"]
     assert tuple(again.plates.at_points) == pytest.approx(plates.at_points, rel=1e-12)
+
+
+@pytest.mark.parametrize("spring", [None, 3e9])
+def test_given_displacements_are_known_where_cycles_are_skipped(monkeypatch, spring):
+    """Which the way there does not tell. Once NaN, though the scene gives them."""
+    load = {"load.Q": [0.0, 0.0], "load.displacement": [-1e-6, 1e-6], "load.cycles": None, "load.spring": spring}
+    changes = {**load, "load.steps": 1, "fem.size": 0.1}
+    followed = solved(changes).plates
+    monkeypatch.setattr("partialslip_fem.result.plates_of", lambda *given: _unknown(plates.plates_of(*given)))
+    found = solved(changes).plates
+    assert found.displacement == pytest.approx(followed.displacement, rel=1e-9)
+    assert found.displacement + (found.at_points / spring if spring else 0.0) == pytest.approx([-1e-6, 1e-6], rel=1e-9)
+
+
+def _unknown(found):
+    return dataclasses.replace(found, displacement=np.full(2, np.nan))
+
+
+def test_slip_of_rounding_does_not_ratchet():
+    """Q = +-0.02 N/m on 135,750 N/m: slip and net slip are 1e-16 of the largest possible one."""
+    scene = partialslip.load_scene(
+        Path(__file__).parents[2] / "docs/scenes/finite-pad.toml",
+        ["load.Q=[-0.02, 0.02]", "load.sigma=[0, 0]", "fem.accuracy=1e-3"],
+    )
+    found = run(scene, "fem")["fem"]
+    assert found.regime != "ratchets"
+    assert not any("slip does not" in note for note in found.notes)
+    assert (found.m, found.n) == pytest.approx((found.a, found.a), abs=1e-5 * found.a)
+
+
+def test_half_planes_beside_a_pivot_under_moments_are_those_that_can_be_solved():
+    """The default run once refused what fem solves: no exact solution is known where neither end slips."""
+    upper = {"width": 20e-3, "height": 10e-3, "support": "pivot", "pivot_height": 0.0}
+    turning = {"load.Q": [-2e4, 2e4], "load.M": [10.0, -10.0], "load.cycles": 1, "load.steps": 1}
+    turning |= {"bodies.upper": upper, "fem": {"accuracy": 1e-2}}
+    scene = parse_scene(SCENE).replace(turning)
+    assert default_methods(scene) == ("march", "fem")
+    assert default_methods(parse_scene(SCENE)) == ("exact", "fem")
+    found = run(scene.replace({"bodies": Bodies(), "fem.accuracy": 0.1}), "march")["march"]
+    assert found.regime == "sticking ends"

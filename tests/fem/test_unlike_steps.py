@@ -46,8 +46,9 @@ def test_steps_in_which_slip_turns_round_are_known_to_be_too_few(few):
 
 
 @pytest.mark.slow
-def test_steps_become_more_until_they_suffice_or_up_to_a_limit(few):
+def test_steps_become_more_until_they_suffice_or_up_to_a_limit(few, monkeypatch):
     """One step is refined like 8 that are asked for, and is known as well."""
+    monkeypatch.setattr(step_errors, "_MOST_STEPS", 8)
     found, asked = solved(1, **TURNING), solved(8, **TURNING)
     assert found.shares["steps"]["m"] < few.shares["steps"]["m"] / 2
     assert found.m == pytest.approx(asked.m, abs=(found.estimate["m"] + asked.estimate["m"]) * found.a)

@@ -9,7 +9,7 @@ from cell_contact import cells, loads
 import partialslip
 from partialslip.friction import history
 from partialslip.friction.coulomb_constant_pressure import march
-from partialslip.friction.limit import ahead, cycle_change, cycles_settled, limit
+from partialslip.friction.limit import Cycles, ahead, cycle_change, cycles_settled, limit, lost, room_of, undecided
 from partialslip.judge.means import norm_errors
 
 BOUND = np.array([1.0, 2.0, 0.5, 0.0])
@@ -85,6 +85,43 @@ def test_a_change_counts_beside_its_bound_and_the_rounding_of_all_forces():
     assert cycle_change(forces + 3e-14 * np.eye(3)[2], forces, near, 3.0, 0.0) == pytest.approx(1 / 3, rel=1e-6)
     assert cycle_change(forces + 3e-14 * np.eye(3)[2], forces, near, 0.0, 2e-15) == pytest.approx(1 / 2, rel=1e-6)
     assert cycle_change(0 * forces, 0 * forces, 0 * near, 0.0, 0.0) == 0
+
+
+def test_what_room_will_be_left():
+    """Room in geometric progression is lost, unless its limit is more than half of it; a power of the cycles is not
+    known, nor is room that grew before it fell, or that of fewer than three cycles."""
+    count = np.arange(1, 5)[:, None]
+    rooms = np.hstack(
+        [0.02**count, 0.7**count, 1 + 0.1**count, 0.1 + 0 * count, 1 / count**2, np.abs(count - 2.5) - 0.4]
+    )
+    bound = np.ones(6)
+    assert lost(rooms).tolist() == [True, True, False, False, False, False]
+    assert not lost(rooms[:2]).any()
+    assert undecided(rooms[:3], bound, 1.0, 3).tolist() == [False, False, False, False, True, False]
+    assert undecided(rooms[:2], bound, 1.0, 2).tolist() == [True, True, False, False, True, True]
+    assert undecided(rooms[:1], bound, 0.01, 1).tolist() == [True, False, False, True, False, False]
+    assert not undecided(rooms[:2], bound, 1e-9, 2).any()  # more room than may still go
+
+
+def test_room_in_a_cycle():
+    """Between the ends of the cycle; out of phase up to the bound and down to it at any of the load points."""
+    visited = [(np.array([q]), np.array([bound])) for q, bound in ((-1.0, 1.5), (0.5, 1.0), (0.8, 2.0))]
+    assert room_of(visited, (0, 2)) == pytest.approx([1.5 + 2.0 - 1.8])
+    assert room_of(visited, None) == pytest.approx([0.5 + 0.5])
+
+
+def test_cycles_go_on_while_room_falls():
+    """q hardly changes, and room falls a thousandfold in each cycle: the third one tells that nothing is left."""
+    cycles, q = Cycles(5e-3, 5e-3), np.ones(2)
+    ends = []
+    for room in (1.0, 1e-3, 1e-6):
+        cycles.add(q + 1e-3, q, q, np.array([room, 0.5]), 2.0, 0.0)
+        ends.append(cycles.end)
+    assert ends == [True, False, True]
+    cycles.skipped()
+    cycles.add(q + 1e-3, q, q, np.array([1e-6, 0.5]), 2.0, 0.0)
+    assert not cycles.end
+    assert not cycles.steady
 
 
 @pytest.mark.slow

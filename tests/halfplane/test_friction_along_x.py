@@ -10,6 +10,7 @@ import partialslip
 from partialslip.errors import InputError
 from partialslip.halfplane import contact, hysteresis, one_step_zone, stick_zone
 from partialslip.halfplane.contact import contact_of
+from partialslip.judge.reference import reference
 from partialslip.run import run
 
 HERTZ, FLAT = (partialslip.load_scene(name) for name in ("hertz-shear", "flat-rounded"))
@@ -179,3 +180,63 @@ def test_varying_pressure_has_no_closed_form():
     scene = varying([0.6, 0.4], load={"p0": None, "P": [HERTZ.P, 1.2 * HERTZ.P]})
     with pytest.raises(InputError, match="varies along x, and the pressure in time"):
         run(scene, ["exact"])
+
+
+def with_a_feature(factor, middle, width, **tables):
+    """f = 0.5, and ``factor`` times that at ``middle``, falling to 0.5 within ``width``/2, both in a."""
+    x = np.array([-1, middle - width / 2, middle, middle + width / 2, 1]) * A
+    return HERTZ.replace(friction={"f": [0.5, 0.5, 0.5 * factor, 0.5, 0.5], "x": x}, **tables)
+
+
+# a dip slips inside the stick zone; a bump sticks in the slip zone
+FEATURES = [(0.1, 0.2, 2e-2), (0.1, 0.2, 1e-4), (3.0, 0.7, 2e-2)]
+
+
+@pytest.mark.parametrize(("factor", "middle", "width"), FEATURES)
+def test_dips_and_bumps_are_refused_and_march_is_the_reference(factor, middle, width):
+    scene = with_a_feature(factor, middle, width, fem={"accuracy": 1e-2})
+    assert reference(scene).method == "march"
+    outcome = run(scene, ["march", "fem"])
+    assert not outcome.comparisons["fem"].missed
+    march = outcome.results["march"]
+    assert "m" in march.undetermined
+    # a friction law on cells that each see all of the dip
+    cells = march.traction.cells
+    fine = cells[:-1, None] + np.diff(cells)[:, None] * (np.arange(200) + 0.5) / 200
+    bound = (scene.friction.at(fine) * contact(scene).pressure(fine)).mean(axis=1)
+    assert (np.abs(march.traction.dq) / 2 <= bound + 1e-4 * march.p0).all()
+
+
+def test_many_loads_over_a_dip_have_no_zone():
+    pressed = contact(with_a_feature(0.1, 0.2, 1e-4))
+    zones = stick_zone(pressed, pressed.f, [2e5, 3e5, 6.1e5], 0.0)
+    assert np.isnan(zones.m).tolist() == [True, True, False]  # all of the last zone is left of the dip
+
+
+@pytest.mark.fault
+@pytest.mark.parametrize(("factor", "middle", "width"), FEATURES)
+def test_fixed_places_alone_do_not_see_them(monkeypatch, factor, middle, width):
+    """Deliberate fault: exact looks at fixed places. Then \\|dq\\| is beyond the bound beside the kinks of f."""
+    scene = with_a_feature(factor, middle, width)
+    with pytest.raises(InputError, match="more than one zone"):
+        run(scene, ["exact"])
+    monkeypatch.setattr("partialslip.halfplane.traction._room_at_kinks", lambda *_: np.inf)
+    monkeypatch.setattr("partialslip.halfplane.steady.slips_on", lambda *_: True)
+    found = run(scene, ["exact"]).results["exact"]
+    x = (middle + width * np.linspace(-1, 1, 801)) * A
+    p, dq, *_ = found.traction.at(x)
+    assert ((np.abs(dq) / 2 - scene.friction.at(x) * p) / (0.5 * found.p0)).max() > 0.05
+
+
+def test_slip_of_one_direction_needs_no_stages():
+    """f falls by a fifth within 1e-4 a: while the zone's end passes the jump two zones stick, yet slip only grows."""
+    x, a = np.array([-1, 0.5399, 0.54, 1]) * A, A
+    scene = HERTZ.replace(
+        friction={"f": [0.5, 0.5, 0.6, 0.6], "x": x}, load={"sigma": [-1e8, 1e8]}, fem={"accuracy": 1e-3}
+    )
+    outcome = run(scene, ["exact", "march"])
+    exact, march = outcome.results.values()
+    assert not exact.path_dependent
+    for key in "mn":
+        assert abs(getattr(exact, key) - getattr(march, key)) < 2 * march.estimate[key] * a
+    assert not outcome.comparisons["march"].missed

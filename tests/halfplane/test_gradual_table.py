@@ -202,3 +202,14 @@ def test_zones_of_one_step_show_as_jumps(monkeypatch):
 
     monkeypatch.setattr(gradual_table, "tabled", one_step)
     assert sharpest(along_lines()) > 10
+
+
+def test_a_figure_up_to_large_tension_takes_no_time(monkeypatch):
+    """Q_f = 0.5 and dsigma a up to 12 dQ: no pair of loads asks the solver, and zones that the table lacks are NaN."""
+    monkeypatch.setattr("partialslip.halfplane.zones.half_cycle", None)
+    dQ, share = F * PRESSED.P, np.linspace(0, 12, 200)
+    zones = stick_zone(PRESSED, F, dQ, share * dQ / PRESSED.a)
+    known = ~np.isnan(zones.m)
+    assert known[share < 6.2].all()
+    assert not known[share > 6.3].any()
+    assert (zones.s[~known] != 0).all()

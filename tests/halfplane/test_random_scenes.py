@@ -146,7 +146,7 @@ def of_pressure(pressed, f, dQ, dsigma):
 
     grid = np.cos(np.linspace(math.pi, 0, 401))
     x = a * np.unique(np.clip([*grid, *(mirror * (zone.centre + zone.half_width * grid))], -1, 1))
-    at_slips, slip, dissipated = dissipation(zone, pressed.shape)
+    at_slips, slip, dissipated, _ = dissipation(zone, pressed.shape)
     regime = "stuck" if dQ == dsigma == 0 else "small tension" if found.s > 0 else "large tension"
     slips = mirror * a * at_slips[::mirror], turn * a * slip[::mirror]
     turns = float(transition(abs(dQ) / (2 * f * pressed.P), pressed.shape)) * f * pressed.p0

@@ -284,3 +284,13 @@ def test_the_change_taken_for_the_load_point_is_caught(monkeypatch):
     monkeypatch.setattr(stress_module, "half_range", lambda *args: 2 * half_range(*args))
     edge = scaled(HertzShape(), 0.5, 0.0).surface(np.array([1.0]))[0, 1, 0]
     assert abs(edge / (2 * F * math.sqrt(0.5)) - 1) > 0.5
+
+
+def test_integrals_on_the_axis_are_those_beside_it():
+    """What is so close to the axis that far panels see points on it has the same values by real numbers alone."""
+    made = cauchy.Cauchy(
+        lambda t: np.stack([np.sqrt(1 - t**2), np.where(t < 0.3, 1 + t, 1.6 - t)]), np.array([-1, 0.3, 1])
+    )
+    z = np.append(np.linspace(-2, 2, 41), [-1.0, 0.3, 1.0]) - 1e-30j
+    with np.errstate(all="ignore"):
+        np.testing.assert_allclose(made.along(z), made(z)[0], rtol=0, atol=1e-13)

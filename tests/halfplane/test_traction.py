@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from quadrature import integrate
 
+from partialslip.halfplane import traction
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.halfplane.traction import adhered, half_range
+from partialslip.result import StickZone
 
 LOADS = [(0.19, 0.4), (0.75, 2.4), (0.4, 4.03), (0.3, 8.0), (0.0, 3.0), (0.9, 20.0), (0.4, 87.8), (0.5, 2.3431457535)]
 
@@ -92,3 +94,14 @@ def test_traction_is_continuous_at_the_ends_of_the_zones(shape):
             if abs(end) < 1:
                 steps = [np.ptp(half_range(end + np.array([-h, h]), zone, shape)) for h in (1e-6, 1e-8)]
                 assert steps[1] < 0.2 * steps[0]
+
+
+def test_many_points_are_interpolated(monkeypatch):
+    """dq in the stick zone, interpolated between panels that shrink towards its ends, is that at each point."""
+    shape, zone = Punch([0.1, 0.4, 0.7], [1.0, 0.3, 0.2], np.arccos([0.1, 0.4, 0.7])), StickZone(-0.05, 0.45, -1)
+    x = zone.centre + zone.half_width * np.concatenate([np.linspace(-1, 1, 301), 1 - np.geomspace(1e-13, 1, 60)])
+    direct = traction.half_range(x, zone, shape)
+    monkeypatch.setattr(traction, "_PLENTY", 0)
+    found, beyond = traction.half_range(x, zone, shape), 1e-16 + np.minimum(x - zone.left, zone.right - x)
+    # of a square root that begins at the end the rounding of x alone leaves so much
+    assert (np.abs(found - direct) <= 1e-14 + 1e-15 / np.sqrt(np.abs(beyond))).all()

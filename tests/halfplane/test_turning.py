@@ -106,8 +106,8 @@ def test_signs_of_the_loads(Qf, sf, turn, mirror):
     x = np.linspace(-0.99, 0.99, 41)
     np.testing.assert_allclose(other.traction(x), turn * plain.traction(mirror * x), atol=1e-12)
     assert other.ends == pytest.approx(plain.ends[::mirror] if mirror > 0 else [-end for end in plain.ends[::-1]])
-    at, slip, dissipated = plain.worn
-    where, theirs, worn = other.worn
+    at, slip, dissipated, _ = plain.worn
+    where, theirs, worn, _ = other.worn
     np.testing.assert_allclose(np.interp(at, where, theirs), turn * np.interp(mirror * at, at, slip), atol=1e-9)
     assert dissipated == pytest.approx(worn, rel=1e-9)
 
@@ -138,7 +138,7 @@ def test_energy_of_the_net_slip_alone_is_seen(monkeypatch):
 @pytest.mark.parametrize(("Qf", "sf"), [(0.55, 7.0), DRIFT, TO_THE_END])
 def test_no_slip_where_points_stick(Qf, sf):
     found = cycle(Qf, sf)
-    x, slip, _ = found.worn
+    x, slip, *_ = found.worn
     left, right = found.permanent
     inside = (x > left) & (x < right)
     assert inside.any()

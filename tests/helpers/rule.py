@@ -6,9 +6,9 @@ from typing import get_args
 from partialslip.judge import Outcome, Verdict, conclude
 from partialslip.result import Regime
 
-WITHOUT = {"sliding", "frictionless", "ratchets"}
+WITHOUT = {"sliding", "frictionless"}
 REGIMES = get_args(Regime)
-STICKS = [regime for regime in REGIMES if regime not in WITHOUT]
+STICKS = [regime for regime in REGIMES if regime not in {*WITHOUT, "ratchets"}]
 
 
 def questions(regime):
@@ -16,7 +16,7 @@ def questions(regime):
     return {
         "sliding": {"regime", "a", "p", "q"},
         "frictionless": {"regime", "a", "p", "q"},
-        "ratchets": {"regime", "a", "p"},
+        "ratchets": {"regime", "a", "m", "n", "p", "q", "q1", "q2"},
     }.get(regime, {"a", "m", "n", "p", "q", "q1", "q2"})
 
 

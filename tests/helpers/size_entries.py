@@ -1,10 +1,13 @@
-"""Artificial entries of a study of sizes, and a scene of small blocks."""
+"""Artificial entries of a study of sizes, made-up sizes, and a scene of small blocks."""
 
 import made
 import msgspec
+import numpy as np
 
 import partialslip
 from partialslip.study.size.case import Sized
+from partialslip.study.size.law import Sizes
+from partialslip.study.size.sizes import DIFFERENCES
 
 BLOCKS = {"upper": {"width": 1.0, "height": 1.0}, "lower": {"width": 1.0, "height": 1.0}}
 
@@ -31,9 +34,13 @@ def sized(labels, left=None, rig=0.0, refused="", **methods):
     return Sized(labels=labels, run=solved.run, refused=refused, **more)
 
 
-def entries(name, found, failed=(), left=None, rig=0.0):
+def entries(name, found, failed=(), left=None, rig=0.0, remains=0.0):
     """Return solved cases along the axis ``name``: differences of a by size, and what is left with equivalent
-    half-planes, text where there are none; and failed cases."""
+    half-planes, text where there are none; the case that stands for an infinite size, with what ``remains`` of the
+    difference, unless None; and failed cases."""
+    if found and remains is not None:
+        far = 100 * max(found)
+        found, left = found | {far: remains}, left and left | {far: 0.0}
     none = {"p_max": 1.0, "m": None, "n": None}
     solved = []
     for at, off in found.items():
@@ -42,3 +49,17 @@ def entries(name, found, failed=(), left=None, rig=0.0):
         fem = {"a": 1 + off, "estimate": {"a": 3e-5}, "counts": {"dofs": 100}, **none}
         solved.append(sized({name: at, "accuracy": 1.0}, fem=fem, exact={"a": 1.0, **none}, **more))
     return solved + [Sized(labels={name: at, "accuracy": 1.0}, error="too narrow") for at in failed]
+
+
+X = 4.0 * 2.0 ** np.arange(6)  # up to 128
+
+
+def made_sizes(off, mesh=0.0, x=X, remains=0.0, error=0.0):
+    """Return sizes with one change and one error of the mesh for all quantities; and what remains at an infinite size,
+    with its error, unless None."""
+    off, mesh = (np.broadcast_to(each, x.shape).astype(float) for each in (off, mesh))
+    limit = np.inf
+    if remains is not None:
+        limit = 100 * x[-1]
+        x, off, mesh = np.append(x, limit), np.append(off, remains), np.append(mesh, error)
+    return Sizes("W", x, dict.fromkeys(DIFFERENCES, off), dict.fromkeys(DIFFERENCES, mesh), limit=limit)

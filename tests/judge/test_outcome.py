@@ -20,7 +20,7 @@ SOUND = Verdict("finite", PASSED)
         *((regime, ("a", "m", "n", "p", "q")) for regime in STICKS),
         ("sliding", ("regime", "a", "p", "q")),
         ("frictionless", ("regime", "a", "p", "q")),
-        ("ratchets", ("regime", "a", "p")),
+        ("ratchets", ("regime", "a", "m", "n", "p", "q")),
     ],
 )
 def test_every_regime_has_its_questions(regime, asked):

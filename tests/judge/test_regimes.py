@@ -6,6 +6,8 @@ import pytest
 from known import EXACT, SCENE, SHARE, A, F, P, result
 from msgspec.structs import replace as changed
 
+from partialslip import compare
+from partialslip.judge import Outcome
 from partialslip.judge.verdict import _barely, _too_near
 
 NEXT = 1 - 1e-12
@@ -90,3 +92,15 @@ def test_only_ratchets_have_a_bound_of_the_mean():
     assert not _barely(result(regime="ratchets"), replace(reference, limits={}), scene, 0.01)
     uneven, scene = held(-0.5 * LIMIT, Q_mean_least=-0.2 * LIMIT, Q_mean_most=0.5 * LIMIT)
     assert not _barely(result(regime="ratchets"), uneven, scene, 0.01)
+
+
+@pytest.mark.parametrize(("unsure", "outcome"), [({}, Outcome.MISSED), ({"regime": "too little"}, Outcome.NOT_JUDGED)])
+@pytest.mark.parametrize("ratchets", ["result", "reference"])
+def test_slip_that_adds_up_to_little_tells_not_whether_it_ratchets(unsure, outcome, ratchets):
+    """A mean of Q 1.8 % above its bound adds 8.6e-4 of the slip of half a cycle: march and fem called it steady."""
+    drifting = result("march", undetermined=unsure, estimate=dict.fromkeys("mnq", 1e-6))
+    other = result(regime="ratchets")
+    pair = (other, drifting) if ratchets == "result" else (drifting, replace(other, method="exact"))
+    verdicts = {each.quantity: each for each in compare(*pair, SCENE, 1e-4).verdicts}
+    assert verdicts["regime"].outcome is outcome
+    assert (verdicts["regime"].reason == "march: too little") == (outcome is Outcome.NOT_JUDGED)

@@ -266,7 +266,7 @@ def test_what_the_reference_says_is_not_there_is_not_judged(reference, scene, ke
 
 
 def test_a_method_that_calls_its_value_undetermined_is_not_judged_by_it():
-    march = replace(EXACT, method="march")
+    march = replace(EXACT, method="march", estimate=dict.fromkeys("mnq", 1e-6))
     found = replace(result(centre=0.1), method="exact", undetermined={"m": "path-dependent"}, path_dependent=True)
     assert verdicts(found, march)["m"].outcome is NOT_JUDGED
     assert verdicts(found, march)["m"].reason == "exact: path-dependent"
@@ -416,8 +416,8 @@ def test_nodal_errors_stand_beside():
     comparison = compare(result(of=traction(p=1.02, q=1.1)), EXACT, SCENE, 1e-3)
     assert (comparison.p_nodal, comparison.q_nodal) == pytest.approx((0.02, 0.1))
     assert (comparison.p_nodal_max, comparison.q_nodal_max) == pytest.approx((0.02, 0.06), rel=1e-2)
-    sliding = compare(result(), replace(EXACT, regime="ratchets"), SCENE, 1e-3)
-    assert (sliding.q_nodal, sliding.q_nodal_max) == (None, None)
+    ratchets = compare(result(), replace(EXACT, regime="ratchets"), SCENE, 1e-3)
+    assert (ratchets.q_nodal, ratchets.q_nodal_max) == (None, None)
     none = replace(EXACT, traction=traction(q=0.0))
     assert compare(result(), none, SCENE, 1e-3).q_nodal is None
 

@@ -6,7 +6,9 @@ from quadrature import rule
 
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
-from partialslip.march.cells import compliance, forces, graded_cells
+from partialslip.march.cells import compliance, forces, friction_on, graded_cells
+from partialslip.march.similar import _cells
+from partialslip.scene import Friction
 
 POINTS = np.array([-1.0, -0.8, 0.2, 1.0])
 
@@ -90,3 +92,23 @@ def test_adhered_traction():
     q = np.linalg.solve(compliance(vertices), x / 4) / widths
     inner = np.abs(x) < 0.49
     assert q[inner] == pytest.approx((x / 4 / np.sqrt(0.25 - x**2))[inner], rel=2e-3, abs=2e-4)
+
+
+def test_no_dip_of_friction_is_left_out():
+    """Each kink of f is an end of a cell, with several cells up to the next one, however coarse the mesh."""
+    kinks = [-0.3, -0.3 + 5e-5, -0.3 + 1e-4, 0.6]
+    vertices = _cells([-1.0, 1.0], [], kinks, None, 1e-2, 0.2)
+    at = np.searchsorted(vertices, kinks)
+    assert np.array_equal(vertices[at], kinks)
+    assert np.diff(at).min() >= 5
+    assert len(vertices) < 300
+
+
+def test_friction_on_cells_keeps_its_integral():
+    """Also where a dip lies inside a cell. Deliberate fault: the coefficient in the middle of the cell."""
+    friction = Friction(f=(0.5, 0.5, 0.05, 0.5, 0.5), x=(-1.0, 0.2, 0.201, 0.202, 1.0))
+    places = np.linspace(-0.9, 0.9, 10)
+    mean = friction_on(friction, places)
+    assert mean @ np.diff(places) == pytest.approx(0.5 * 1.8 - 0.45 * 0.001, rel=1e-13)
+    middle = friction.at((places[1:] + places[:-1]) / 2)
+    assert abs(middle @ np.diff(places) - 0.9) < 1e-13

@@ -8,6 +8,7 @@ from flats import beside_the_flat
 from varying_scenes import varying
 
 import partialslip
+from partialslip.allowance import Allowance
 from partialslip.bars import BARS
 from partialslip.halfplane import contact, one_step_zone
 from partialslip.march import similar as marching
@@ -288,3 +289,29 @@ def test_errors_that_are_nearly_small_enough_take_a_mesh_halfway(monkeypatch, na
     whole = partialslip.run(scene, ["march"]).results["march"]
     assert whole.counts["meshes"] == result.counts["meshes"]
     assert 0.5 < result.counts["cells"] / whole.counts["cells"] < 0.65
+
+
+def test_the_first_estimate_is_made_however_few_seconds_there_are():
+    """Under a budget the stick zone out of phase was once that of two coarse meshes, without an estimate."""
+    scene = partialslip.load_scene("fretting-aluminium", ["load.Q=[0, 3e4, 0, -3e4]", "load.sigma=[1e8, 0, -1e8, 0]"])
+    hurried = partialslip.run(scene, "march", allowance=Allowance(0.0))["march"]
+    assert hurried.counts["meshes"] == 3
+    true = partialslip.run(scene.replace(fem={"accuracy": 1e-4}), "march")["march"]
+    for key in ("m", "n"):
+        off = abs(getattr(hurried, key) - getattr(true, key)) / true.a
+        assert 0 < hurried.estimate[key] < 1e-2
+        assert off < 2 * (hurried.estimate[key] + true.estimate[key])
+
+
+def test_load_points_that_repeat_change_nothing():
+    """A leg on which nothing moves has rates without a tolerance: 0/0 once ended the search for slipping nodes."""
+    angles = np.arange(8) * np.pi / 4
+    P, Q = 135750.0 * (1 + 0.2 * np.sin(angles)), 3e4 * np.sin(angles)
+    sigma = 1e8 * np.cos(angles)
+    found = []
+    for times in (1, 2):
+        load = {"P": P.repeat(times).tolist(), "Q": Q.repeat(times).tolist(), "sigma": sigma.repeat(times).tolist()}
+        scene = partialslip.load_scene("fretting-aluminium").replace(load=load | {"cycles": 2}, fem={"accuracy": 2e-2})
+        found.append(partialslip.run(scene, "march")["march"])
+    once, twice = found
+    assert (twice.m, twice.n) == pytest.approx((once.m, once.n), abs=1e-5 * once.a)

@@ -13,6 +13,7 @@ from partialslip import load_scene, run
 from partialslip.judge import Outcome
 from partialslip.plan import plan
 from partialslip.report import answer, print_run, rows
+from partialslip.result.peak import pressure_peaks
 from partialslip.run import compared
 from partialslip.scene import Scene
 
@@ -176,3 +177,70 @@ def test_a_contact_that_slides_has_no_stick_zone_to_compare():
     slides = load_scene("hertz-shear", ["load.Q=[-1e9, 1e9]"])
     last = printed(run(slides, "exact")).replace("\n", " ").split("  ")[-1]
     assert "no bars: the contact slides as a whole, so there is no stick zone to compare" in last
+
+
+# A number without an error estimate is marked, and there is no stick zone without a steady state
+
+
+def test_a_value_without_an_estimate_has_few_digits_and_is_marked():
+    march = result("march", estimate={}, counts={"tangential_unknowns": 62})
+    text = dict(answer.answers(ran({"march": march})))
+    assert text["m, n"] == f"{C:.4g} a, {C:.4g} a, no error estimate"
+    assert text["stick zone"].endswith(" mm, no error estimate")
+    assert text["largest |q2|"].endswith(" MPa, no error estimate")
+    assert text["a"] == f"{A * 1e3:.7g} mm"  # march knows the pressure to rounding
+    fem = dict(answer.answers(ran({"fem": result(estimate={})})))
+    assert all(fem[key].endswith(", no error estimate") for key in ("a", "p0", "p_max", "m, n"))
+    assert rows.value(march, "m") == f"{C:.4g} a, no error estimate"
+    assert rows.value(result("march"), "m") == f"{C:.7f} a"
+    cells = {row[0]: row[2] for row in answer.amounts({"march": march})[1]}
+    assert cells["m, stick from -m"] == f"{C * A * 1e3:.4g}, no error estimate"
+    assert cells["a, half-width"] == f"{A * 1e3:.7g}"
+
+
+def test_the_result_that_tells_its_errors_answers():
+    estimate = dict.fromkeys(("a", "p", "m", "n", "q"), 1e-4)
+    phases = load_scene("hertz-shear", ["load.Q=[0.0, 3e4, 1e4]", "load.sigma=[0.0, 0.0, 1e7]"])
+    known, rough = result(estimate=estimate), result("march", estimate={})
+    assert ran({"march": rough, "fem": known}, phases).answering == "fem"
+    assert ran({"march": replace(rough, estimate=estimate), "fem": known}, phases).answering == "march"
+    assert ran({"march": rough, "fem": replace(known, estimate={})}, phases).answering == "march"
+    block = load_scene("hertz-shear", ["bodies.lower={width=0.02, height=0.01}"])
+    assert ran({"exact": EXACT, "fem": rough}, block, None).answering == "fem"  # half-planes answer for no body
+
+
+def test_a_contact_that_ratchets_has_no_stick_zone_to_print():
+    exact = replace(EXACT, regime="ratchets")
+    run_ = ran({"exact": exact, "fem": result(regime="ratchets")})
+    text = dict(answer.answers(run_))
+    assert text["stick zone"] == "none: the contact ratchets: there is no steady state"
+    assert "m, n" not in text
+    assert "not judged: m, n, q: the contact ratchets: there is no steady state" in printed(run_)
+    assert (rows.value(exact, "m"), rows.value(exact, "a")) == ("none", rows.value(EXACT, "a"))
+    assert "no steady state" in repr(exact)
+    assert " m = " not in repr(exact)
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides", "keys"),
+    [
+        ("flat-rounded", ["fem.accuracy=1e-2"], ["p_max"]),
+        ("fretting-aluminium", ["load.P=[100e3, 135e3]", "fem.accuracy=1e-2"],
+         ["p_max, load point 1", "p_max, load point 2"]),
+    ],
+)  # fmt: skip
+def test_the_largest_pressure_stands_beside_its_scale(name, overrides, keys):
+    """p0 = 2 P/(pi a) is the largest pressure of Hertz's contact alone; that of a flat and rounded one is 2.2 p0."""
+    found = run(load_scene(name, overrides))
+    exact, fem = found["exact"], found["fem"]
+    text = dict(answer.answers(found))
+    assert [key for key in text if key.startswith("p_max")] == keys
+    assert exact.p0 == pytest.approx(2 * found.scene.P / (np.pi * exact.a), rel=1e-12)
+    peaks, seen = (pressure_peaks(each, error) for each, error in ((exact, 0.0), (fem, fem.estimate["p"])))
+    for key, (peak, error), (of_fem, known) in zip(keys, peaks, seen, strict=True):
+        x = np.linspace(*exact.ends[1], 100_001)
+        pressure = exact.traction.at(x).pressures[0 if key.endswith("1") else 1]
+        assert peak == pytest.approx(pressure.max(), rel=2e-7)
+        assert float(text[key].split()[0]) == pytest.approx(peak / 1e6, rel=1e-6)
+        assert error < 1e-6 * peak
+        assert abs(of_fem - peak) < known

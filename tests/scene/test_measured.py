@@ -114,6 +114,34 @@ def test_units_in_the_heading_are_read(tmp_path, lines):
         assert found.gap == pytest.approx(given.gap, rel=1e-9, abs=1e-18)
 
 
+@pytest.mark.parametrize("line", [
+    "Length mm,Depth um", "Length mm;Depth um", "Length mm\tDepth um", "Length mm  Depth um", "Length mm Depth um",
+    "x_mm,gap_um", "x_mm gap_um", "x/mm, gap/um", "x in mm; gap in um", "mm,um", "# x mm, gap \N{MICRO SIGN}m",
+    "Distance [mm], Depth um", "Distance mm, Depth (um)", '"Length mm","Depth um"', "X (MM), Z (UM)", "x {mm}, z {um}",
+])  # fmt: skip
+def test_units_without_brackets_are_read(tmp_path, line):
+    given = scene_of(tmp_path, *points(2e-7)).profile
+    found = scene_of(tmp_path, *points(2e-7), WITHOUT, ("# trace 3, stylus of 2 um at 0.5 mm/s", line)).profile
+    assert found.measured.unit == pytest.approx((1e-3, 1e-6))
+    assert found.x == pytest.approx(given.x, rel=1e-12)
+
+
+@pytest.mark.parametrize(("line", "word"), [
+    ("Unit: mm", "mm"), ("Length mm, Depth", "mm"), ("Length, Depth um", "um"), ("Length, Depth [um]", "um"),
+    ("x [mm], gap", "mm"), ("Length mm, Depth um, raw", "mm"),
+    ("x (millimetres), gap (microns)", "millimetres"), ("x [mm], gap (um, raw)", "mm"), ("Length mil,Depth mil", "mil"),
+    ("lengths in micrometers", "micrometers"), ("x inch gap inch", "inch"),
+])  # fmt: skip
+def test_units_that_cannot_be_read_are_refused(tmp_path, monkeypatch, line, word):
+    monkeypatch.chdir(tmp_path)
+    told = line_of(scene_of, Path(), *points(2e-7), WITHOUT, (line,))
+    assert told.endswith(
+        f"pad.csv: unit {word!r} in the heading: must stand behind the name of each column, as in x [mm], gap [um], or "
+        "give profile.unit"
+    )
+    scene_of(Path(), *points(2e-7), SCENE, (line,))  # the scene says what the heading does not
+
+
 @pytest.mark.parametrize(
     ("lines", "unit"), [(("# all in [mm]",), 1e-3), (("# x, gap (scan [3])",), 1.0), (("x,gap",), 1.0)]
 )
@@ -134,6 +162,63 @@ def test_units_that_contradict_or_are_unknown_are_refused(tmp_path, monkeypatch,
     monkeypatch.chdir(tmp_path)
     assert message in line_of(scene_of, Path(), *points(2e-7), text, lines)
     scene_of(Path(), *points(2e-7), SCENE, ("x [mm], gap [mil]",))  # the scene says what the heading does not
+
+
+def test_columns_in_the_wrong_order_are_refused(tmp_path):
+    told = line_of(scene_of, tmp_path, *points(2e-7), WITHOUT, ("gap [um], x [mm]",))
+    assert told.endswith("pad.csv: heading 'gap [um], x [mm]': the columns must be x, then gap")
+
+
+HALF = SCENE.replace("sigma = [-60e6, 60e6]", "")
+
+
+def half(apart, noise=2e-8, count=200, seed=0):
+    """One half of a cylinder of R = 10 mm, from ``apart`` right of its lowest point on."""
+    x = np.linspace(0.0, 2e-3, count)
+    return x, (x + apart) ** 2 / 0.02 + 1e-6 + noise * np.random.default_rng(seed).standard_normal(count)
+
+
+@pytest.mark.parametrize("noise", [0.0, 2e-8, 2e-7])
+def test_one_half_of_an_even_gap_is_followed(tmp_path, noise):
+    """The slope at x = 0 is zero: a is that of the cylinder, and the load points are mirror images."""
+    scene = scene_of(tmp_path, *half(0.0, noise), HALF)
+    found = run(scene, "exact")["exact"]
+    hertz = run(scene.replace(profile={"kind": "hertz", "R": 0.01}), "exact")["exact"]
+    assert scene.profile.even
+    assert found.a == pytest.approx(hertz.a, rel=1e-9 + 2e5 * noise)
+    assert found.m == found.n
+
+
+@pytest.mark.parametrize("apart", [-60e-6, -30e-6, -100e-6, 30e-6, 60e-6])
+@pytest.mark.parametrize("noise", [0.0, 2e-8])
+def test_a_half_that_begins_beside_its_lowest_point_is_refused(tmp_path, apart, noise):
+    """Mirrored at x = 0 it would be another profile: at 60 um before its lowest point a was 19 % too large."""
+    told = line_of(scene_of, tmp_path, *half(apart, noise), HALF)
+    place = float(told.partition("the lowest point is at about ")[2].split()[0])
+    assert place == pytest.approx(-apart, abs=1e-8 + 200 * noise)
+    assert "must be at 0 for one half of an even gap" in told
+
+
+def test_a_whole_trace_that_begins_at_zero_is_refused(tmp_path):
+    told = line_of(scene_of, tmp_path, *half(-1e-3), HALF)
+    assert "lowest point is at about 0.001 m" in told
+
+
+@pytest.mark.fault
+def test_a_mirror_image_that_is_not_checked(tmp_path, monkeypatch):
+    """Without the comparison of both fits the trace is taken, and a is wrong by a tenth and more."""
+    monkeypatch.setattr("partialslip.scene.measured._refuse_mirror", lambda *_: None)
+    scene = scene_of(tmp_path, *half(-60e-6), HALF)
+    found = run(scene, "exact")["exact"]
+    hertz = run(scene.replace(profile={"kind": "hertz", "R": 0.01}), "exact")["exact"]
+    assert found.a > 1.1 * hertz.a
+
+
+def test_the_units_are_told(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scene_of(tmp_path, *points(2e-7), WITHOUT, ("Length mm,Depth um",))
+    assert main(["run", "job.toml", "--with", "exact"]) == 0
+    assert "points of the profile 400 of pad.csv, x in mm, gap in um" in " ".join(capsys.readouterr().out.split())
 
 
 def test_exponents_of_fortran(tmp_path):

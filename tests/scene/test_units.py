@@ -334,7 +334,7 @@ def test_tables_name_the_units(pair):
     assert found["p0"] == f"{result.p0 / 1e6:.7g} MPa"
     facts = rows.facts(result, units=units)
     assert "slides at |Q| = 40.73 N/mm" in facts["limits"]
-    assert facts["slip"].endswith(f"{result.slip.dissipated:.5g} N mm/mm dissipated a cycle")
+    assert facts["slip"].endswith(f"{result.slip.dissipated:.7g} N mm/mm dissipated a cycle")
     assert ("material", "E", "72100 MPa") in [(table or "material", *rest) for table, *rest in rows.settings(run.scene)]
     assert "Q goes between -13.1 and 38.75 N/mm" in run.plan.called_for.values()
 

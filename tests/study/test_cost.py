@@ -1,13 +1,9 @@
-"""The study of cost: ladder, figures, results of other codes, and price list."""
+"""The study of cost: ladder, figures, results of other codes."""
 
-import importlib
-import json
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import made
-import numpy as np
 import pytest
 from outline import texts
 
@@ -15,10 +11,8 @@ import partialslip
 from partialslip.batch.job import Job, ProcessCost, solve_apart
 from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
-from partialslip.cli import run as command
 from partialslip.cli.cost import _left_out, _progress
 from partialslip.study.cost import ladder as cost
-from partialslip.study.cost import prices
 from partialslip.study.cost.figure import errors_svg, phases_svg
 from partialslip.study.cost.spending import Spending
 
@@ -227,157 +221,3 @@ def test_what_is_no_peers_result_is_refused(tmp_path, capsys, line, told):
     assert said.count("\n") == 1
     assert told in said
     assert not (tmp_path / "out").exists()
-
-
-# the price list
-
-
-def measured(spread=0.0):
-    """Artificial costs from a model: Hertz contacts and punches, without and with mean loads, both factorisations."""
-    random = np.random.default_rng(3)
-    for name, kind in (("hertz-shear", 1.0), ("flat-rounded", 1.5)):
-        for loads, family in (([], 1.0), (["load.Q=[-10e3,20e3]", "load.sigma=[0,0]"], 2.0)):
-            for factor, rate in (("cholmod", 0.4), ("superlu", 0.5)):
-                for digits in (2.0, 3.0, 4.0, 5.0, 6.0):
-                    settings = [*loads, f"fem.accuracy={10**-digits!r}", f"fem.factor={factor}"]
-                    seconds = kind * family * 0.1 * math.exp(rate * digits + spread * random.normal())
-                    slow = random.uniform(1, 3)
-                    costs = {"exact": 0.1 * seconds * slow, "fem": 0.9 * seconds * slow}
-                    yield prices.MeasuredRun(partialslip.load_scene(name, settings), costs, 0.7 * slow, 0.5 * slow)
-
-
-def priced(known, name="hertz-shear", *settings, **more):
-    return known.price(partialslip.load_scene(name, ["fem.factor=cholmod", "fem.accuracy=1e-4", *settings]), **more)
-
-
-def test_the_model_is_found_again():
-    """Independent of other load on the machine; for each profile, family and factorisation."""
-    known = prices.fit(measured(), "a machine")
-    assert max(family.spread for family in known.families.values()) == pytest.approx(1, abs=2e-2)
-    work = known.closing + known.start
-    slow = priced(known).cpu_s - work
-    means = ["load.Q=[-10e3,20e3]", "load.sigma=[0,0]"]
-    for setting, expected in (
-        (("hertz-shear", "fem.factor=superlu"), 0.4),
-        (("flat-rounded",), math.log(1.5)),
-        (("hertz-shear", *means), math.log(2)),
-    ):
-        assert math.log((priced(known, *setting).cpu_s - work) / slow) == pytest.approx(expected, abs=3e-2)
-
-
-def test_start_and_report_are_in_the_price():
-    known = prices.fit(measured(), "a machine")
-    once, twice = priced(known), priced(known, start=2 * known.start)
-    assert (once.start_s, once.closing_s) == (known.start, known.closing)
-    assert twice.cpu_s == pytest.approx(2**known.power * (once.cpu_s - known.start) + 2 * known.start)
-    assert 0.9 < known.power <= 1
-
-
-def test_prices_that_are_not_known_are_not_told():
-    """A family without measured runs, an accuracy beyond them, other methods, and runs that scatter."""
-    known = prices.fit(measured(), "a machine")
-    assert priced(known).cpu_s is not None
-    assert "1.0e-04 a: price not known" in str(priced(known, "fretting-aluminium", "load.P=[120e3, 135e3]"))
-    for setting in ("fem.accuracy=1e-8", "fem.order=2", "material.upper={E=1e11,nu=0.3}", "effects.history=true"):
-        assert priced(known, "hertz-shear", setting).cpu_s is None, setting
-    assert priced(known, methods=["march", "fem"]).cpu_s is None
-    assert priced(known, methods=["fem", "exact"]).cpu_s == priced(known).cpu_s
-    scattered = prices.fit(measured(1.0), "a machine")
-    assert priced(scattered, "hertz-shear", "fem.accuracy=1e-6").cpu_s is None
-    few = prices.fit([run for run in measured() if prices.price_family(run.scene) == "reversed"], "a machine")
-    assert [*few.families] == ["reversed"]
-    with pytest.raises(partialslip.InputError, match="at least 10"):
-        prices.fit([], "a machine")
-
-
-def test_families_follow_bodies_and_loads():
-    def family(*settings):
-        return prices.price_family(partialslip.load_scene("fretting-aluminium", settings))
-
-    assert family() == family("load.Q=[-1e4, 1e4]") == family("fem.accuracy=1e-6") == "reversed"
-    assert family("load.Q=[0, 3e4]") == "mean loads, slip turns round"
-    assert family("load.Q=[0, 3e4]", "load.sigma=[0, 0]") == "mean loads"
-    assert family("load.P=[120e3, 135e3]") == "varying P"
-    assert family("material.upper={E=2e11, nu=0.3}") == "unlike"
-    pad = "bodies.upper={kind='pad', width=12e-3, height=5e-3"
-    assert family(pad + "}") == "finite"
-    assert family(pad + ", support='pivot', pivot_height=1e-4}") == "pivot"
-
-
-def test_a_price_follows_no_gradual_way(monkeypatch):
-    """Which takes seconds where a zone inside slips: as many as the run."""
-    monkeypatch.setattr("partialslip.halfplane.turning.steady", lambda *_: pytest.fail("followed"))
-    turning = partialslip.load_scene("hertz-shear", ["load.Q=[-267035, 267035]", "load.sigma=[-9e8, 9e8]"])
-    assert prices.price_family(turning) == "slip turns round"
-
-
-def test_the_shipped_list_rises_with_accuracy():
-    known = prices.load_prices()
-    assert {*known.profiles} == {"hertz", "flat-rounded"}
-    paid = [priced(known, "hertz-shear", f"fem.accuracy={asked}").cpu_s for asked in (1e-3, 1e-4, 1e-5)]
-    assert paid == sorted(paid)
-    assert paid[0] > known.start + known.closing
-
-
-@pytest.mark.parametrize("extra", [("--with", "exact"), ("--set", "fem.size=0.1")])
-def test_a_budget_needs_elements_that_follow_an_accuracy(refused, extra):
-    assert refused("run", "hertz-shear", "--budget", "50s", *extra).startswith("partialslip: --budget: needs")
-
-
-def test_a_budget_below_the_least_price_is_refused_before_work_starts(monkeypatch, refused):
-    monkeypatch.setattr(partialslip, "run", lambda *_, **__: pytest.fail("work has started"))
-    assert "must be at least" in refused("run", "hertz-shear", "--budget", "0.01s")
-
-
-def test_what_the_choice_of_methods_takes_is_part_of_a_budget(monkeypatch, refused):
-    """The exact way is followed for it, which may take more than all else."""
-    clock, allowed = [0.0], []
-
-    def default_methods(_):
-        clock[0] += 100.0
-        return "exact", "fem"
-
-    def run(*_, **__):
-        raise partialslip.InputError("no run")
-
-    monkeypatch.setattr(command, "time", SimpleNamespace(process_time=lambda: clock[0]))
-    monkeypatch.setattr(importlib.import_module("partialslip.run"), "default_methods", default_methods)
-    monkeypatch.setattr(command, "Allowance", lambda rest, **_: allowed.append(rest))
-    monkeypatch.setattr(partialslip, "run", run)
-    refused("run", "hertz-shear", "--budget", "1000s")
-    known = prices.load_prices()
-    assert allowed == [pytest.approx(1000 - 100 - known.start - known.closing)]
-
-
-def test_a_price_is_told_and_the_accuracy_reached(tmp_path, capsys):
-    assert main(["run", "hertz-shear", "--accuracy", "1e-3", "--out", str(tmp_path)]) == 0
-    printed = capsys.readouterr()
-    assert "predicted" in printed.err
-    assert "actual" in printed.out
-    text = json.loads((tmp_path / "results.json").read_text("utf-8"))
-    found, estimate = text["comparison"]["fem"]["errors"], text["methods"]["fem"]["estimate"]
-    assert max(found[key] for key in ("a", "m", "n")) <= 1e-3
-    assert f"known to {max(estimate[key] for key in ('a', 'm', 'n')):.1e} a" in printed.out
-
-
-def test_a_budget_goes_beyond_the_default_accuracy_and_tells_the_estimate(tmp_path, capsys, monkeypatch):
-    """Up to the finest accuracy, or to the one that is set."""
-    monkeypatch.setattr(prices, "FINEST_ACCURACY", 1e-7)
-    for settings, finest in ([], 1e-7), (["--set", "fem.accuracy=1e-3"], 1e-3):
-        out = tmp_path / str(finest)
-        assert main(["run", "hertz-shear", "--budget", "1000s", *settings, "--out", str(out)]) == 0
-        fem = json.loads((out / "results.json").read_text("utf-8"))["methods"]["fem"]
-        known = max(fem["estimate"][key] for key in ("a", "m", "n"))
-        assert fem["settings"]["accuracy"] == finest
-        printed = " ".join(capsys.readouterr().out.split())
-        assert "budget of 1000 s" in printed
-        assert f"known to {known:.1e} a" in printed
-
-
-@pytest.mark.parametrize(
-    "options",
-    [("--budget", "0"), ("--budget", "-1s"), ("--budget", "soon"), ("--budget", "nan"), ("--budget", "1e-3s"),
-     ("--accuracy", "x"), ("--accuracy", "1"), ("--accuracy", "1e-3", "--budget", "5s")],
-)  # fmt: skip
-def test_bad_prices_are_one_line(refused, options):
-    refused("run", "hertz-shear", *options)

@@ -17,7 +17,7 @@ import msgspec
 import numpy as np
 import pytest
 from outline import texts as texts_of
-from size_entries import entries, scene, sized
+from size_entries import X, entries, made_sizes, scene, sized
 
 from partialslip.batch.job import Job, solve_job
 from partialslip.batch.ledger import Ledger
@@ -29,7 +29,7 @@ from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import Sized, compared_methods, solve_sized
 from partialslip.study.size.figure import grid_svg, size_svg
-from partialslip.study.size.law import Kind, PointStatus, Sizes, trend
+from partialslip.study.size.law import Kind, PointStatus, trend
 
 
 def test_the_error_of_marched_half_planes_is_part_of_that_of_a_difference():
@@ -140,15 +140,6 @@ def runs(number):
         return False
 
 
-X = 4.0 * 2.0 ** np.arange(6)  # up to 128
-
-
-def made_sizes(off, mesh=0.0, x=X, **more):
-    """Return sizes with one change and one error of the mesh for all quantities."""
-    off, mesh = (np.broadcast_to(each, x.shape).astype(float) for each in (off, mesh))
-    return Sizes("W", x, dict.fromkeys(size.DIFFERENCES, off), dict.fromkeys(size.DIFFERENCES, mesh), **more)
-
-
 def test_the_law_of_made_up_sizes_is_found():
     law = trend(made_sizes(0.3 * X**-2.0, 3e-7), "m").law
     assert law.k == pytest.approx(2, abs=1e-9)
@@ -170,7 +161,7 @@ def test_differences_that_scatter_have_no_law_and_no_sizes():
     for off in ([2e-3, 5e-3, 3e-2], [3e-2, 1e-2, 2.9e-2], [3e-2, 2.9e-2, 2e-2]):
         found = trend(made_sizes(np.array(off), 1e-6, x), "m")
         assert found.law is None
-        assert set(found.points) == {PointStatus.NO_LAW}
+        assert set(found.points[:-1]) <= {PointStatus.NO_LAW, PointStatus.FEW, PointStatus.FLOOR}
         assert {each.kind for each in found.needed} <= {Kind.BOUND, Kind.INTERPOLATED}
 
 
@@ -226,25 +217,26 @@ def test_every_point_is_fitted_or_says_why_not():
         PointStatus.FITTED,
         PointStatus.UNCLEAR,
         PointStatus.FITTED,
+        PointStatus.LIMIT,
     )
     assert trend(made_sizes(off, np.where(X > 8, 1.0, 0.0)), "m").points[:2] == (PointStatus.FEW, PointStatus.FEW)
     assert trend(made_sizes(off, np.nan), "m").points[0] is PointStatus.UNKNOWN
 
 
 def test_the_command_prints_and_writes_what_was_found(tmp_path, monkeypatch, capsys):
-    key = "load.P"
+    key = "bodies.lower.height"
     solved = entries(key, {at: 40 * at**-2.0 for at in (4.0, 8.0, 16.0, 32.0, 64.0, 128.0)})
     monkeypatch.setattr(size, "measure", lambda *_, **__: solved)
-    command = ["study", "size", "hertz-shear", "--over", "load.P=4,8,16,32,64,128", "--processes", "1"]
+    command = ["study", "size", "hertz-shear", "--over", f"{key}=4,8,16,32,64,128", "--processes", "1"]
     assert main([*command, "--out", str(tmp_path / "solved")]) == 0
     printed = capsys.readouterr().out
-    for text in ("63.2, interpolated", "200 (200 to 200), extrapolated", "3.9e-02 f", "6.2e-01 s"):
+    for text in ("63.2, interpolated", "200 (197 to 203), extrapolated", "3.9e-02 f", "6.2e-01 s"):
         assert text in printed
     files = ["cases.csv", "laws.csv", "points.csv", "size.svg"]
     assert sorted(path.name for path in (tmp_path / "solved").glob("*.[cs]*v*")) == files
     monkeypatch.setattr(size, "measure", lambda *_, **__: entries(key, {}, [4.0]))
     assert main([*command, "--out", str(tmp_path / "failed")]) == 1
-    assert "not solved: load.P 4.0, accuracy 1.0: too narrow" in capsys.readouterr().out
+    assert "not solved: bodies.lower.height 4.0, accuracy 1.0: too narrow" in capsys.readouterr().out
     assert not (tmp_path / "failed" / "size.svg").exists()
 
 
@@ -269,11 +261,13 @@ def test_table_csv_and_figure_mark_the_same_points():
     found = entries(axis.name, {at: 0.3 * at**-2.0 for at in (4.0, 8.0, 16.0, 32.0, 64.0, 128.0)}, [2.0])
     study = tables.size_study(scene(), axis, found)
     headings, rows = tables.differences_table(study, study.models[0])
-    assert headings == ("size", "a", "p0", "mesh")
+    assert headings == ("size", "a", "p_max", "mesh")
     marks = {row[0]: row[1][-1] for row in rows}
-    assert marks == {"2": "-", "4": "f", "8": "f", "16": "f", "32": "e", "64": "e", "128": "e"}
+    assert marks == {"2": "-", "4": "f", "8": "f", "16": "f", "32": "e", "64": "e", "128": "e", "1.28e+04": "v"}
     points = list(csv.DictReader(tables.points_csv(study).splitlines()))
-    assert [row["point"] for row in points if row["quantity"] == "a"] == ["fitted"] * 3 + [PointStatus.UNCLEAR] * 3
+    assert [row["point"] for row in points if row["quantity"] == "a"] == [
+        *["fitted"] * 3, *[PointStatus.UNCLEAR] * 3, PointStatus.LIMIT,
+    ]  # fmt: skip
     assert points[-1]["point"] == "too narrow"
     laws = list(csv.DictReader(tables.laws_csv(study).splitlines()))
     unit = "[a of the half-plane]"
@@ -281,7 +275,7 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert [laws[0][key] for key in ("quantity", "kind", *ends)] == ["a", "interpolated", "4.0", "8.0"]
     assert all(f"size {unit}" in table[0] for table in (points, laws))
     assert tables.laws_table(study)[1][0][-1] == "4, 8, 16"
-    assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p0"]
+    assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p_max"]
     assert "not solved: bodies.*.width 2.0, accuracy 1.0: too narrow" in tables.size_notes(study)
     assert "f: fitted" in tables.size_notes(study)
 
@@ -310,7 +304,8 @@ def test_both_half_planes_have_their_laws():
     assert [trend.quantity for trend in alike.trends] == ["a"]
     assert (plain.trends[0].law.k, alike.trends[0].law.k) == pytest.approx((2, 4))
     rows = {row[0]: row[1] for row in tables.differences_table(study, alike)[1]}
-    assert rows == {"2": "-", "4": "-", "8": "2.0e-01 f", "16": "1.2e-02 f", "32": "7.6e-04 f", "64": "4.8e-05 e"}
+    solved = {"8": "2.0e-01 f", "16": "1.2e-02 f", "32": "7.6e-04 f", "64": "4.8e-05 e", "6400": "0.0e+00 v"}
+    assert rows == {"2": "-", "4": "-", **solved}
     assert [row[:2] for row in tables.laws_table(study)[1]] == [("a", "half-plane"), ("a", "equivalent")]
     needed = {row[:2]: row[2] for row in tables.needed_table(study)[1]}
     assert needed["a", "equivalent"] == "16.8, interpolated"
@@ -318,7 +313,7 @@ def test_both_half_planes_have_their_laws():
     assert "no equivalent half-planes at 2 and 4: must be larger" in tables.size_notes(study)
     points = list(csv.DictReader(tables.points_csv(study).splitlines()))
     assert [float(row["difference"]) for row in points if row["half-planes"] == "equivalent"] == pytest.approx(
-        [800 * at**-4.0 for at in (8.0, 16.0, 32.0, 64.0)]
+        [*(800 * at**-4.0 for at in (8.0, 16.0, 32.0, 64.0)), 0.0]
     )
     laws = list(csv.DictReader(tables.laws_csv(study).splitlines()))
     assert {row["half-planes"]: round(float(row["k"]), 6) for row in laws if row["k"]} == {
@@ -326,8 +321,8 @@ def test_both_half_planes_have_their_laws():
     }  # fmt: skip
     head, rows = size.case_table([axis], found, scene().units)
     column = head.index("equivalent: a")
-    assert [row[column] for row in rows] == ["", "", *(left[at] for at in (8.0, 16.0, 32.0, 64.0))]
-    assert [row[head.index("no equivalent")] for row in rows] == ["must be larger", "too large", "", "", "", ""]
+    assert [row[column] for row in rows] == ["", "", *(left[at] for at in (8.0, 16.0, 32.0, 64.0)), 0.0]
+    assert [row[head.index("no equivalent")] for row in rows] == ["must be larger", "too large", "", "", "", "", ""]
     assert all(len(row) == len(head) for row in rows)
 
     texts = [text.strip() for text in texts_of(size_svg(study))]
@@ -402,7 +397,14 @@ def test_blocks_come_near_the_half_plane_with_the_square_of_their_size(tmp_path)
         found = size.measure(scene(accuracy=1e-3), [axis], ledger, executor)
     sizes = size.along(axis, found)
     for quantity in ("a", "m"):
-        assert all(10 * sizes.mesh[quantity] < sizes.off[quantity])
+        assert all((10 * sizes.mesh[quantity] < sizes.off[quantity])[sizes.size < sizes.limit])
         assert trend(sizes, quantity).law.k == pytest.approx(2, abs=0.1)
     meshes = [sum(entry.labels["bodies.*.width = bodies.*.height"] == each for entry in found) for each in sizes.size]
     assert meshes[0] < meshes[-1]
+
+
+def test_the_former_name_of_the_largest_pressure_is_deprecated():
+    axes = [read(text) for text in ("bodies.lower.width=4a,8a", "bodies.lower.height=4a,8a")]
+    with pytest.warns(DeprecationWarning, match="p0: the largest pressure is now p_max"):
+        former = size.grid(axes, [], "p0")
+    np.testing.assert_array_equal(former[2], size.grid(axes, [], "p_max")[2])

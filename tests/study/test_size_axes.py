@@ -86,7 +86,7 @@ def test_cases_are_written_in_the_units_of_the_scene():
     plain = scene()
     for axis, key in ((read("bodies.lower.height=2,4"), "bodies.lower.height [mm]"),
                       (read("bodies.lower.height=2a,4a"), "bodies.lower.height [a of the half-plane]")):  # fmt: skip
-        found = entries(axis.name, {2.0: 0.5})
+        found = entries(axis.name, {2.0: 0.5}, remains=None)
         head, (row,) = size.case_table([axis], found, N_MM)
         written = dict(zip(head, row, strict=True))
         assert (written[key], written["a [mm]"], written["p_max [MPa]"], written["m [mm]"]) == (2.0, 1500.0, 1e-6, "")

@@ -23,6 +23,7 @@ from partialslip.cli import main
 from partialslip.cli import verify as command
 from partialslip.judge import Bar, Outcome, verdict
 from partialslip.march import similar as marching
+from partialslip.output.lock import LOCK_NAME
 from partialslip.run import run
 from partialslip.scene.reading import load_scene
 from partialslip.verify import Case, driver, run_case, stress_suite, suite
@@ -264,6 +265,35 @@ def test_verdicts_are_kept_as_they_are_read_back(tmp_path):
     assert kept.cases == {"near-stuck-1e-9": tuple(verdicts)}
 
 
+@pytest.mark.parametrize("kind", ["killed", "interrupted"])
+def test_a_second_run_that_is_stopped_leaves_the_first(kind, tmp_path):
+    """Ledger, verdicts and report of the finished run stay as they are; a third run goes on from the second."""
+    settings = {"only": ["1", "2"], "method": "exact", "seed": 5, "processes": 1, "out": tmp_path}
+    driver.verify_suite("stress", **settings)
+    first = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.name != LOCK_NAME}
+    assert {"ledger.jsonl", "report.html", "results.csv", "results.json"} < set(first)
+
+    def stop(done, *_):
+        if done and kind == "killed":
+            os._exit(9)
+        if done:
+            raise KeyboardInterrupt
+
+    if kind == "killed":
+        if not (child := os.fork()):
+            driver.verify_suite("stress", **settings, progress=stop)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 9
+    else:
+        with pytest.raises(KeyboardInterrupt):
+            driver.verify_suite("stress", **settings, progress=stop)
+    assert {name: (tmp_path / name).read_bytes() for name in first} == first
+    known = []
+    driver.verify_suite("stress", **settings, progress=lambda done, *_: known.append(done))
+    assert known == [1, 2]
+    assert {path.name for path in tmp_path.iterdir()} - {LOCK_NAME} == set(first)
+    assert (tmp_path / "ledger.jsonl").read_bytes() != first["ledger.jsonl"]
+
+
 def test_a_finished_run_begins_anew(tmp_path):
     """A finished verification starts anew when repeated, because the program may have changed."""
     settings = {"only": ["1"], "method": "march", "seed": 5, "processes": 1, "out": tmp_path}
@@ -273,7 +303,7 @@ def test_a_finished_run_begins_anew(tmp_path):
     driver.verify_suite(
         "stress", **settings, progress=lambda done, *_: known.append((done, (tmp_path / "report.html").exists()))
     )
-    assert known == [(0, False), (1, False)]  # nor is its report
+    assert known == [(0, True), (1, True)]  # its report stays until the new one is there
     assert len(first.splitlines()) == len((tmp_path / "ledger.jsonl").read_text("utf-8").splitlines()) == 1
 
 

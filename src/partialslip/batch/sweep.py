@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from queue import Empty, SimpleQueue
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -153,6 +154,7 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
         yield _Here()
         return
     if cluster is None:
+        _track()
         context = multiprocessing.get_context("spawn")  # BLAS threads and gmsh do not survive a fork
         pool = _Processes(processes or os.cpu_count(), context, _begin)
         try:
@@ -166,9 +168,24 @@ def workers(cluster: str | None = None, processes: int | None = None) -> Iterato
         yield crew
 
 
+def _track() -> None:
+    """Start Python's process that removes what killed processes leave, so that it outlives a closed terminal. Python
+    would otherwise start another one at the end, which prints tracebacks about what it does not know."""
+    if sys.platform == "win32":
+        return
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGHUP})
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+
+
 def _begin() -> None:
-    """Ignore Ctrl-C in a worker, which the parent process handles, and end the worker when the parent ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Ignore Ctrl-C and a closed terminal in a worker, which the parent process handles, and end the worker when the
+    parent ends."""
+    for name in ("SIGINT", "SIGHUP"):
+        if number := getattr(signal, name, None):
+            signal.signal(number, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

@@ -24,7 +24,7 @@ _ENDS = ("left_1", "right_1", "left_2", "right_2")
 _GRADUAL = "quadratures and an integral equation along the gradual path"
 _NEAR = 1e-3  # accuracy: another method that is farther off does not check the digits of an exact solution
 _EVEN = 1e-4  # accuracy: of a: nearer to each other places are one
-_FINE = 1e-5  # accuracy: asked of march and fem; a hundredth of fem of finite bodies, which have no exact solution
+_FINE = 1e-5  # accuracy: asked of march and fem; a hundredth of fem of finite bodies, which exact does not solve
 _CONSISTENT = 3.0  # accuracy: difference from a rough method, in its own estimate, that confirms a value
 _STEPS = (16, 64, 256)  # accuracy: load steps from which slip is extrapolated, where it is of first order in them
 _PIECES = 31  # accuracy: points of a tabulated parabola
@@ -134,18 +134,15 @@ def _solved(problem: Problem, way: Derivation) -> Result:
 
 
 def _slip(problem: Problem, a: float) -> dict[str, Quantity]:
-    """Slip and dissipated energy of finite elements, extrapolated from runs with more and more load steps."""
+    """Slip and dissipated energy of finite elements: slip extrapolated from runs with more and more load steps."""
     found = []
     for steps in _STEPS:
         changes = {"fem.size": 0.01, "fem.order": 2, "load.steps": steps}
         found.append(quantities(problem.scene, _solved(problem, Derivation("fem", "", changes)), problem.places, a))
-    result = {}
-    for key in ("slip", "dissipated"):
-        first, second, last = (each[key].value for each in found)
-        ratio = (first - second) / (second - last)
-        value = last - (second - last) / (ratio - 1) if ratio > 1 else last
-        result[key] = found[-1][key]._replace(value=value)
-    return result
+    first, second, last = (each["slip"].value for each in found)
+    ratio = (first - second) / (second - last)
+    value = last - (second - last) / (ratio - 1) if ratio > 1 else last
+    return {"slip": found[-1]["slip"]._replace(value=value), "dissipated": found[-1]["dissipated"]}
 
 
 def _of_exact(checked: float, turns: bool) -> float:

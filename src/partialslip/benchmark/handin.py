@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 from partialslip.benchmark.folder import examined
-from partialslip.benchmark.problem import Problem
-from partialslip.benchmark.submission import META, Answer, Meta, Submission
+from partialslip.benchmark.problem import Problem, Target
+from partialslip.benchmark.submission import META, Answer, Meta, Submission, seen
 from partialslip.benchmark.tables import TableValues, differences
 from partialslip.errors import InputError
 from partialslip.inputfile import checksum
@@ -15,6 +15,9 @@ from partialslip.output.files import files_in
 _DUE = {"author": "who ran the code", "version": "the version of the code", "settings": "elements and contact in words",
         "machine": "processor and system"}  # fmt: skip
 _LARGEST = 2**30  # limit: bytes of an input file
+_POSITIVE = {"a", "p_max", "slip", "dissipated", "swt", "swt_line"}  # fixed: quantities that are positive
+_ORDERED = (("m", "n", -1), ("left_1", "right_1", 1), ("left_2", "right_2", 1))  # fixed: ends of [-m, n] and others
+_TENSION = 0.01  # limit: largest tension at the ends of the contact, in p0: what nodal means have there
 _WILD = 10.0  # limit: largest error, in the scale of a target: no code is so far off, but values in mm and MPa are
 
 
@@ -49,7 +52,7 @@ def handed_in(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> t
 
 def _meta_faults(folder: Path, meta: Meta) -> Iterator[str]:
     for name, content in _DUE.items():
-        if not getattr(meta, name).strip():
+        if not seen(getattr(meta, name)):
             yield f"{folder / META}: {name} = {getattr(meta, name)!r}: must be {content}"
     if not meta.inputs:
         yield f"{folder / META}: inputs: must be a table of the input files and their SHA-256 checksums"
@@ -99,15 +102,31 @@ def _inside(file: Path, folder: Path) -> bool:
         return False
 
 
-def _answer_faults(folder: Path, problem: Problem, answer: Answer, table: TableValues | None) -> Iterator[str]:
-    file, targets = folder / f"{problem.number}.json", problem.targets
-    given = {key: value for key, value in answer.values.items() if value is not None and key in targets}
-    if not given and not table and not answer.note.strip():
-        yield f"{file}: values: must have a value, or note must say why there is none"
+def _value_faults(given: Mapping[str, float], targets: Mapping[str, Target]) -> Iterator[str]:
+    """Lines for values that no contact has: far from the target, of the wrong sign, or ends in the wrong order."""
     for key, value in given.items():
         target = targets[key]
         if not abs(value - target.value) <= _WILD * target.scale:
             most = f"{_WILD * target.scale:.3g} {target.unit}"
-            yield f"{file}: values.{key} = {value:.9g}: must be within {most} of the target; all values are in SI units"
+            yield f"{key} = {value:.9g}: must be within {most} of the target; all values are in SI units"
+        elif key.startswith("p@") and not value >= -_TENSION * target.scale:
+            yield f"{key} = {value:.9g}: must be >= 0: pressure is positive in compression"
+        elif key in _POSITIVE and not value > 0:
+            yield f"{key} = {value:.9g}: must be > 0"
+    for low, high, sign in _ORDERED:
+        if low in given and high in given and not sign * given[low] <= given[high]:
+            least = f"{'-' if sign < 0 else ''}{low} = {sign * given[low]:.9g}"
+            yield f"{high} = {given[high]:.9g}: must be >= {least}, the left end"
+
+
+def _answer_faults(folder: Path, problem: Problem, answer: Answer, table: TableValues | None) -> Iterator[str]:
+    file, targets = folder / f"{problem.number}.json", problem.targets
+    given = {key: value for key, value in answer.values.items() if value is not None and key in targets}
+    if not given and not table and not seen(answer.note):
+        yield f"{file}: values: must have a value, or note must say why there is none"
+    yield from (f"{file}: values.{line}" for line in _value_faults(given, targets))
+    for place, rung in enumerate(answer.ladder[:-1]):  # the last one has the values of the answer
+        own = {key: value for key, value in rung.values.items() if value is not None and key in targets}
+        yield from (f"{file}: ladder[{place}].values.{line}" for line in _value_faults(own, targets))
     if table:
         yield from (f"{file}: {line}" for line in differences(problem, answer, table, f"{problem.number}.csv"))

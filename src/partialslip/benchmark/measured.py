@@ -112,7 +112,8 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
         most = float(np.abs(result.slip.slip).max())
         if most > 0:
             yield "slip", Quantity(most, "m", most, "slip", own["q"])
-            yield "dissipated", Quantity(result.slip.dissipated, "J/m", result.slip.dissipated, "slip", own["q"])
+            work, off = result.slip.dissipated, result.slip.dissipated_error
+            yield "dissipated", Quantity(work, "J/m", work, "slip", math.nan if off is None else off / work)
     if result.surface:
         off = peak_error(result)
         error = math.nan if off is None else off / p0

@@ -50,7 +50,7 @@ class Meta(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Raises
     ------
     InputError
-        If a text has control characters, line ends or marks of the direction of writing.
+        If a text has control characters, line ends or marks of the direction of writing, or ``code`` is blank.
     """
 
     code: Annotated[str, msgspec.Meta(min_length=1, max_length=60)]
@@ -63,6 +63,8 @@ class Meta(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def __post_init__(self) -> None:
         for name in ("code", "version", "settings", "machine", "author"):
             _check_text(name, getattr(self, name))
+        if self.code and not seen(self.code):
+            raise InputError(f"code = {self.code!a}: must be the name of the code")
         for name, checksum in self.inputs.items():
             _check_text("inputs", name)
             _check_text(f"inputs.{name!r}", checksum)
@@ -75,7 +77,7 @@ class Rung(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     h: Annotated[float, msgspec.Meta(gt=0)]
     values: dict[str, float | None]
     cpu_s: Annotated[float, msgspec.Meta(ge=0)] | None = None
-    unknowns: Annotated[int, msgspec.Meta(ge=0)] | None = None
+    unknowns: Annotated[int, msgspec.Meta(ge=1)] | None = None
 
 
 class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -98,7 +100,7 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     values: dict[str, float | None]
     cpu_s: Annotated[float, msgspec.Meta(ge=0)] | None = None
-    unknowns: Annotated[int, msgspec.Meta(ge=0)] | None = None
+    unknowns: Annotated[int, msgspec.Meta(ge=1)] | None = None
     memory_mb: Annotated[float, msgspec.Meta(ge=0)] | None = None
     note: Annotated[str, msgspec.Meta(max_length=1000)] = ""
     ladder: tuple[Rung, ...] = ()
@@ -129,7 +131,7 @@ def check_apart(submissions: Sequence[Submission]) -> None:
         if any(_told(each.meta) == _told(other.meta) for other in submissions[:place]):
             same = "with the same version, settings and machine, by the same author"
             raise InputError(f"code {code!r}: answers twice, {same}: must differ")
-        other = known.setdefault(_seen(code), code)
+        other = known.setdefault(seen(code), code)
         if other != code:
             raise InputError(f"code {code!a} looks like {other!a}: names of codes must look different")
 
@@ -139,7 +141,7 @@ def _told(meta: Meta) -> Meta:
     return msgspec.structs.replace(meta, inputs={})
 
 
-def _seen(text: str) -> str:
+def seen(text: str) -> str:
     """Return ``text`` as a reader sees it: without invisible characters, with single spaces, and with Latin letters for
     those that look like them."""
     plain = unicodedata.normalize("NFKC", text).translate(_LIKE_LATIN)

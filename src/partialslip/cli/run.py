@@ -3,6 +3,7 @@
 import argparse
 import math
 import time
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,12 +28,12 @@ from partialslip.errors import InputError
 from partialslip.methods import METHODS
 
 if TYPE_CHECKING:
+    from partialslip.result import Result
     from partialslip.result.state import State
     from partialslip.run import Run
     from partialslip.scene import Scene
-    from partialslip.study.cost.prices import Price
 
-_OVERDRAFT = 0.25  # cost: of a budget: CPU seconds beyond it that the accuracy of the scene may be planned with
+_CLOSING = 0.5  # cost: CPU seconds of report and exit, which a budget includes (measured: 0.4)
 
 
 def add(commands: Commands) -> None:
@@ -55,11 +56,10 @@ def add(commands: Commands) -> None:
                       help=f"methods of {', '.join(METHODS)}, separated by commas (default: fem and, of one "
                       "material, exact or else march; with bodies.equivalent exact and equivalent)")  # fmt: skip
     runs.add_argument("--accuracy", metavar="FRACTION",
-                      help="accuracy of a, m and n, as a fraction of a; tells the predicted CPU seconds where they are "
-                      "known")  # fmt: skip
+                      help="accuracy of a, m and n, as a fraction of a; tells the CPU seconds taken")  # fmt: skip
     runs.add_argument("--budget", metavar="SECONDS",
-                      help="CPU seconds of the whole process, e.g. 5s; fem picks the best accuracy within the budget; "
-                      "with --set fem.accuracy no finer one")  # fmt: skip
+                      help="CPU seconds of the whole process, e.g. 5s: no mesh is begun that is not likely to fit; "
+                      "errors are estimated in any case")  # fmt: skip
     runs.add_argument("--fields", action="store_true",
                       help="also compare stresses, and write surface.csv and, of fem, bodies.vtu")  # fmt: skip
     runs.add_argument("--start", metavar="FILE",
@@ -83,17 +83,17 @@ def _run(options: argparse.Namespace) -> int:
     start = partialslip.load_state(options.start) if options.start is not None else None
     budget = _budget(options, scene, methods)
 
-    from partialslip.cli.consoles import messages, working
+    from partialslip.cli.consoles import working
     from partialslip.fatigue.of_run import criteria_sections
     from partialslip.output.files import write_files
     from partialslip.report import write_run
     from partialslip.run import default_methods
 
-    priced, allowance = options.accuracy is not None or budget is not None, None
-    if priced:
+    counted, allowance = options.accuracy is not None or budget is not None, None
+    if counted:
         import partialslip_fem.method  # noqa: F401 - imports count as start
+    start_s = time.process_time() if options.own_process else 0.0
     began = time.process_time()
-    price = _price(options, scene, methods, budget, began) if priced else None
     taken = methods or default_methods(scene)
     chosen = sorted({*taken})
     known = {"methods": chosen, "start": options.start and Path(options.start)}
@@ -105,11 +105,8 @@ def _run(options: argparse.Namespace) -> int:
         return {"methods": sorted(default_methods(scene)) if {"fem", "equivalent"} & {*methods} else []}
 
     with folder_if_wanted(options, "run", scene.name, scene, known, usual) as (folder, elsewhere):
-        if price and budget:
-            rest = budget - price.closing_s - price.start_s - (time.process_time() - began)
-            allowance = Allowance(rest, finest=_finest(options), overdraft=_OVERDRAFT * budget)
-        elif price:
-            messages().print(str(price), soft_wrap=True, markup=False)
+        if budget is not None:
+            allowance = Allowance(budget - start_s - _CLOSING - (time.process_time() - began))
         print_long_path(scene, chosen)
         with working(scene.name) as tell:
             with naming(options.scene):
@@ -133,7 +130,7 @@ def _run(options: argparse.Namespace) -> int:
                 files += write_run(
                     outcome, folder, origin(options), pdf=options.pdf, sections=criteria_sections(outcome)
                 )
-    paid = _paid(price, budget, outcome, began) if price else []
+    paid = _paid(options, outcome, start_s + time.process_time() - began) if counted else []
     return print_outcome(outcome, options, files, paid, elsewhere)
 
 
@@ -163,43 +160,30 @@ def _accuracy(options: argparse.Namespace) -> list[str]:
         ) from None
 
 
-def _price(
-    options: argparse.Namespace, scene: "Scene", methods: list[str] | None, budget: float | None, began: float
-) -> "Price":
-    """Return the price of the scene; CPU seconds of the process up to ``began`` are those of its start."""
-    from partialslip.judge.reference import reference
-    from partialslip.study.cost.prices import load_prices
-
-    price = load_prices().price(scene, methods, began if options.own_process else None)
-    least = price.start_s + price.closing_s
-    if budget is not None and budget < least:
-        raise InputError(
-            f"--budget {budget:g}s: must be at least {math.ceil(10 * least) / 10:g} s on this machine, the price of "
-            "start and report" + "; or use the exact method alone (--with exact)" * (reference(scene).method == "exact")
-        )
-    return price
+def _paid(options: argparse.Namespace, outcome: "Run", spent: float) -> list[str]:
+    """Return lines with the budget or the accuracy, the CPU seconds, ``spent`` by this process, and what these have led
+    to."""
+    spent += sum(result.cost.meshing_cpu_s for result in outcome.results.values())
+    asked = f"budget of {options.budget}" if options.budget is not None else f"accuracy {options.accuracy}"
+    reached = [_reached(result) for name, result in outcome.results.items() if name == "fem"]
+    return [f"{asked}: {spent:.2g} CPU s", *reached]
 
 
-def _finest(options: argparse.Namespace) -> float:
-    """Return the accuracy up to which a budget is spent: with ``--set fem.accuracy`` no finer one than that."""
-    from partialslip.study.cost.prices import FINEST_ACCURACY
+def _reached(fem: "Result") -> str:
+    """Return how well ``fem`` knows its ends, in a, as text."""
+    from partialslip.judge.known import error_of
 
-    return math.inf if any(each.startswith("fem.accuracy") for each in options.overrides) else FINEST_ACCURACY
+    keys = [key for key in ("a", "m", "n") if getattr(fem, key) is not None]
+    errors = {key: error_of(fem, key, fem.method) for key in keys}
+    known = {key: error for key, error in errors.items() if math.isfinite(error)}
+    lost = [key for key in keys if key not in known]
+    parts = [f"{_listed(known)} known to {max(known.values()):.1e} a"] if known else []
+    return "fem: " + ", ".join([*parts, *([f"no error estimate of {_listed(lost)}"] if lost else [])])
 
 
-def _paid(price: "Price", budget: float | None, outcome: "Run", began: float) -> list[str]:
-    """Return lines with the predicted CPU seconds or the ``budget``, the actual seconds, those since ``began`` after
-    the start, and what they have led to."""
-    taken = (
-        price.start_s
-        + time.process_time()
-        - began
-        + sum(result.cost.meshing_cpu_s for result in outcome.results.values())
-    )
-    fem = outcome.results.get("fem")
-    known = max((fem.estimate[key] for key in ("a", "m", "n") if key in fem.estimate), default=0.0) if fem else 0.0
-    reached = [f"a, m and n known to {known:.1e} a"] if known else []
-    return [f"{f'budget of {budget:g} s' if budget else price}; {taken:.2g} CPU s, actual", *reached]
+def _listed(keys: Iterable[str]) -> str:
+    *before, last = keys
+    return " and ".join(filter(None, [", ".join(before), last]))
 
 
 def _state(outcome: "Run") -> "State":

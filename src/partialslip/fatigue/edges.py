@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from partialslip.arrays import Array
-from partialslip.report.answer import estimate_of
+from partialslip.judge.known import error_of
 from partialslip.result import Result
 from partialslip.scene import Scene
 
@@ -135,7 +135,7 @@ def _of_half_planes(scene: Scene, result: Result, side: float) -> Coefficient:
         return float(force / np.sqrt(2 * a))
 
     a = (right - left) / 2
-    return Coefficient(K_T(a), abs(K_T(a * (1 + estimate_of(result, "a"))) - K_T(a)))
+    return Coefficient(K_T(a), abs(K_T(a * (1 + error_of(result, "a", result.method))) - K_T(a)))
 
 
 def _fitted(at: Callable[[Array], Array], end: float, inwards: float, marks: Array, power: float) -> Coefficient:

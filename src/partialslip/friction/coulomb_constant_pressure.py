@@ -16,7 +16,7 @@ import numpy as np
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Factored, Sides, Solution, solve_bounded
 from partialslip.friction.history import History, Steps, follow, resting, still
-from partialslip.friction.load_path import Path
+from partialslip.friction.load_path import Missed, Path
 from partialslip.friction.path_following import Bounds, Follower, Leg, NothingSticksError, joined, noise
 from partialslip.scene.model import require_carried
 
@@ -65,7 +65,7 @@ def march(
     """
     factored = factored or Factored(tangential)
     require_carried([load[0] for load in path.cycle], float((f * normal).sum()))
-    path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)))
+    path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)), missed=Missed(0.0, 0.0))
     if path.half:
         contact = _Contact(factored, stretch, normal, f, path, near, few)
         history = contact.followed()

@@ -14,7 +14,7 @@ import numpy as np
 from partialslip.arrays import Array, Mask, submatrix
 from partialslip.friction.active_set import Solution, spread
 from partialslip.friction.history import History, Steps, follow, resting
-from partialslip.friction.load_path import Path
+from partialslip.friction.load_path import Missed, Path
 from partialslip.friction.normal import Presses
 from partialslip.friction.path_following import Bounds, Follower, Leg, joined
 from partialslip.scene.model import require_carried
@@ -127,7 +127,7 @@ class _Contact:
         turns = path.in_phase and any(each.turns > self._few for each in last)
         return replace(
             history,
-            path=replace(self._asked, turns=turns),
+            path=replace(self._asked, turns=turns, missed=Missed(0.0, 0.0)),
             room=None if path.in_phase else room,
             held=self._spread(np.logical_and.reduce([each.held for each in last])).astype(bool),
             slipped=np.array([self._spread(each) for each in np.sum([each.leg.slipped for each in last], axis=0)]),

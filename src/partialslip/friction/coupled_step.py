@@ -16,8 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg as la
+from scipy.optimize import brentq
 
 from partialslip.arrays import Array, Mask, submatrix
+from partialslip.errors import PartialslipError
 from partialslip.friction.active_set import Sides, Solution, solve_bounded
 from partialslip.friction.history import resting
 from partialslip.friction.normal import press
@@ -25,7 +27,9 @@ from partialslip.friction.partition import Factors, Forces, longest
 from partialslip.friction.warm_start import Pair, Trail
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
+_SAME = 1e-6  # accuracy: shear force of an actuator, in f P, that Newton's method begins with
 _PATIENCE = 4  # cost: iterations without progress before the method changes
+_UNSOLVED = 1e-8  # limit: residual of a step, in P, that does not converge: rounding leaves 1e-15, and others 1e-4
 _CLOSE = 32  # cost: changes of sides in an iteration without progress below which rounding errors may matter
 
 _Solver = Callable[[Array, Array], Forces]  # forces for the displacements (2, n) that have the totals (2,) or (3,)
@@ -129,12 +133,33 @@ class LoadStep:
 
     def sweep(self, p: Solution, q: Solution) -> Pair:
         """One fixed-point iteration: solve for p with the old q, then for q with the new p; both problems are
-        convex."""
+        convex.
+
+        The shear force of an actuator turns a body on a high pin by more than the shear force that follows from the
+        turn can bear: the iteration then begins with the force that follows from itself.
+        """
+        if self.pivot is None or self.actuator is None:
+            return self._swept(p, q, self.Q)
+        most = float(self.f.max()) * self.P
+        found = {Q: self._swept(p, q, Q) for Q in (float(q.x.sum()), -most, most)}
+
+        def excess(Q: float) -> float:
+            if Q not in found:
+                found[Q] = self._swept(p, q, Q)
+            return float(found[Q][1].x.sum()) - Q
+
+        if excess(most) < 0 < excess(-most):
+            brentq(excess, -most, most, xtol=_SAME * most)
+        return found[min(found, key=lambda Q: abs(excess(Q)))]
+
+    def _swept(self, p: Solution, q: Solution, Q: float) -> Pair:
+        """A sweep under the shear force ``Q``, which turns a body on a pivot."""
         n, pushed = len(self.gap), self.gap + self.yx @ q.x
         arms, about = None, 0.0
         if self.pivot:
-            Q = self.Q if self.actuator is None else float(q.x.sum())
-            arms, about = self.pivot.arms, self.pivot.moment - self.pivot.height * Q
+            arms = self.pivot.arms
+            reach = self.P * np.array([arms.min(), arms.max()])  # no pressure has a larger moment
+            about = float(np.clip(self.pivot.moment - self.pivot.height * Q, *reach))
         pressed = press(self.yy, pushed, self.P, arms, about, (p.sides, p.turn))
         on = np.flatnonzero(pressed.x > 0)
         bound = self.f[on] * pressed.x[on]
@@ -144,6 +169,9 @@ class LoadStep:
         sheared = self._held(submatrix(self.xx, on, on), free, bound, q.sides[on]).spread(on, n)
         moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
         left = np.abs(moved - moved[on].mean()) / np.diag(self.yy)
+        if self.pivot:
+            off = abs(self.pivot.of(pressed.x, sheared.x) - self.pivot.moment) / float(np.abs(self.pivot.arms).max())
+            pressed = replace(pressed, imbalance=max(pressed.imbalance, off))
         return replace(pressed, residual=left), replace(sheared, turn=pressed.turn)
 
     def _held(self, C: Array, free: Array, bound: Array, sides: Sides) -> Solution:
@@ -305,8 +333,23 @@ def punched(C: Relative, f: float, sides: Sides) -> tuple[Array, Array]:
 
 
 def solve_near(step: LoadStep, starts: Sequence[Pair], trail: Trail | None, key: Hashable) -> Pair:
-    """Solve one step, first from what the ``trail`` knows of it under its ``key``."""
+    """Solve one step, first from what the ``trail`` knows of it under its ``key``. The first of the ``starts`` is the
+    step before.
+
+    Raises
+    ------
+    PartialslipError
+        If two steps in turn do not converge: under very large friction a step may have no solution, and all that follow
+        would take long and converge as little. The residual of a single one stands in the certificate.
+    """
     found = solve(step, [*starts, *(trail.starts(key) if trail else [])])
+    residuals = [float(p.residual.max()) / step.P for p, _ in (starts[0], found)]
+    if min(residuals) > _UNSOLVED:
+        raise PartialslipError(
+            f"friction.f = {step.f.max():.6g}: load steps do not converge (residual {residuals[1]:.0e} P): too large "
+            "where shear changes the pressure; take a smaller f: the contact sticks nearly everywhere in any case; "
+            "or effects.coupling = false"
+        )
     if trail:
         trail.keep(key, found)
     return found

@@ -14,21 +14,21 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
-from partialslip.friction.limit import ahead, cycle_change, cycles_settled, limit
+from partialslip.friction.limit import LIMIT, SLIPS, Cycles, ahead, limit, lost, room_of
 from partialslip.friction.load_path import Path
 from partialslip.friction.zone_ends import turning_points
 from partialslip.telling import tell
 
 STEADY = 1e-6  # accuracy: change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
-# accuracy: changes of the last cycle that may lie between it and the limit, however few cycles went before
-_LIMIT = 10.0
 # accuracy: change over a cycle, in f p, that ends cycles near enough to the limit for ratios of changes to tell it
 _NEAR = 1e-6
 _BESIDE = 5  # accuracy: neighbouring nodes of which the one that moves most tells how far the steady state is
+# accuracy: slip, in A times the sum of the bounds, that is rounding: forces are known to 1e-16 of their sum, and the
+# compliance of the finest cells adds up 1e5 of them
+_ROUNDED = 1e-10
 # accuracy: slip of nodes that stay in contact, in that of nodes that open, below which they settle
 _NO_SLIP = 1e-3
 _CREEPS = 0.5  # accuracy: of the path of slip in a cycle: net slip from which on a node creeps
-_SLIPS = 1e-9  # accuracy: distance of |dq| from the bound, relative, at which a node slips
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,11 @@ class History:
         never did.
     events : int
         Number of instants at which rates change, on legs that are followed.
+    rooms : (k, n) array or None
+        Room 2 f p - \\|dq\\| in each of the last cycles in turn, at most 3; None if no cycles were followed.
+    steady : bool
+        Whether the last cycle is steady: q changed by no more than ``path.steady`` of its bound, and of each node it is
+        known whether it slips in the steady state.
     """
 
     path: Path
@@ -101,6 +106,8 @@ class History:
     changed: Array | None = None
     stuck: Array | None = None
     events: int = 0
+    rooms: Array | None = None
+    steady: bool = True
 
     def of(self, nodes: npt.NDArray[np.int64]) -> "History":
         """History of some ``nodes`` only (indices)."""
@@ -111,7 +118,7 @@ class History:
             key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "pressures", "end")
         }
         fields["around"] = self.around.of(nodes)
-        some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed", "stuck")}
+        some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed", "stuck", "rooms")}
         fields |= {key: each[..., nodes] for key, each in some.items() if each is not None}
         return replace(self, points=points, **fields)
 
@@ -167,40 +174,35 @@ class History:
 
     @property
     def unsteady(self) -> Array | None:
-        """Room 2 f p - \\|dq\\| that is gone in the steady state, (n,), at nodes that stick again after they slipped:
-        they come to the bound slowly. None if no node does.
+        """Room 2 f p - \\|dq\\| that is gone in the steady state, (n,); None if no cycles were followed.
 
-        Changes in geometric progression add up to the last change times r/(1 - r), with r the ratio of the last two
-        changes; r is known within a factor of two of 1 - r, where cycles end close to their limit. Room that falls with
-        a power of the cycles lasts as many changes of the last cycle as cycles went before: more is not counted. A
-        single node may hardly move by chance, so that the one of its neighbours that moves most tells. Gone is also
-        room of which the limit of the last three cycles, by Aitken's method, leaves less than half: of room that falls
-        in geometric progression it leaves none, of room that falls with a power of the cycles a part.
+        Gone is room that has no limit but none (:func:`partialslip.friction.limit.lost`). Nodes that stick again after
+        they slipped come to the bound slowly: their changes in geometric progression add up to the last change times
+        r/(1 - r), with r the ratio of the last two changes; r is known within a factor of two of 1 - r, where cycles
+        end close to their limit. Room that falls with a power of the cycles lasts as many changes of the last cycle as
+        cycles went before: more is not counted. A single node may hardly move by chance, so that the one of its
+        neighbours that moves most tells.
 
         At constant pressure half cycles of a steady state are mirror images of each other: nodes that slip as they come
         to load point 2 slip as they come to load point 1, too. All of their room is gone, even if it does not fall
         evenly.
         """
-        if self.changed is None or self.lasting is None:
+        if self.rooms is None:
             return None
-        cycle, (one, two) = len(self.path.cycle), self.path.ends
-        last = len(self.points) - cycle
-        ends = [(self.points[begin + one].x, self.points[begin + two].x) for begin in range(last, 0, -cycle)[:3]]
-        room, *before = [2 * self.bound - np.abs(q2 - q1) for q1, q2 in ends]
+        room = 2 * self.bound - np.abs(self.change)
+        gone = np.where(lost(self.rooms), room, 0.0)
+        if self.changed is None or self.lasting is None:
+            return gone
         changed = np.isfinite(self.changed)
-        moved, lasts = self._moved_beside(0), np.full_like(room, max(_LIMIT, self.cycles))
+        moved, lasts = self._moved_beside(0), np.full_like(room, max(LIMIT, self.cycles))
         if self.cycles > 1 and 0 < self.path.settled <= _NEAR:
             falls = np.maximum(self._moved_beside(1) - moved, 0.0)
             lasts = np.minimum(np.maximum(np.divide(2 * moved, falls, out=lasts.copy(), where=falls > 0), 1.0), lasts)
-        gone = np.where(changed, lasts * self.bound * moved, 0.0)
-        if len(before) == 2:
-            falls, fell = before[0] - room, before[1] - before[0]
-            more = np.divide(falls**2, fell - falls, out=np.zeros_like(room), where=(falls > 0) & (falls < fell))
-            gone = np.where(2 * more > room, np.maximum(room, gone), gone)
+        gone = np.where(changed, np.maximum(gone, lasts * self.bound * moved), gone)
         if self.stuck is not None and not self.path.presses_anew:
             slips = np.isfinite(self.lasting) & ~(self.stuck >= self.lasting)
             gone = np.where(slips, np.maximum(room, gone), gone)
-        return np.where(changed, gone, 0.0)
+        return gone
 
     def _moved_beside(self, ago: int) -> Array:
         """Largest change of q over a cycle, relative to the bound, of each node and its neighbours, (n,): over the last
@@ -227,7 +229,7 @@ class History:
         if not held.any():
             return 0.0
         half = float(np.abs(self.slip[held]).max())
-        half = max(half, _NO_SLIP * float(np.abs(self.slip).max()))
+        half = max(half, _NO_SLIP * float(np.abs(self.slip).max()), _ROUNDED * float(self.bound.sum()))
         return float(np.abs(self.net_slip[held]).max()) / half if half > 0 else 0.0
 
     @property
@@ -238,7 +240,7 @@ class History:
     @property
     def slips(self) -> Mask:
         """Nodes that slip from load point 1 to 2, (n,)."""
-        return np.abs(self.change) >= (2 - _SLIPS) * self.bound
+        return np.abs(self.change) >= (2 - SLIPS) * self.bound
 
     @property
     def never_slips(self) -> Mask | None:
@@ -246,7 +248,7 @@ class History:
         if self.slipped is None:
             return None
         most = self.slipped.sum(axis=0)
-        return most <= _SLIPS * float(most.max())
+        return most <= SLIPS * float(most.max())
 
     @property
     def creeps(self) -> Mask | None:
@@ -327,7 +329,7 @@ class Steps(NamedTuple):
         """Nodes (n,) that slip at the end of a step, and stick or slip the other way at the end of the next step on the
         same leg, still in contact."""
         bounds = self.bounds
-        ways = np.where((np.abs(self.forces) >= (1 - _SLIPS) * bounds) & (bounds > 0), np.sign(self.forces), 0.0)
+        ways = np.where((np.abs(self.forces) >= (1 - SLIPS) * bounds) & (bounds > 0), np.sign(self.forces), 0.0)
         legs = np.repeat(np.arange(len(self.ways)), [len(way) for way in self.ways])
         goes_on = (legs[1:] == legs[:-1])[:, None] & (bounds[1:] > 0)
         reversing: Mask = (goes_on & (ways[:-1] != 0) & (ways[1:] != ways[:-1])).any(axis=0)
@@ -367,7 +369,7 @@ def follow(
     points, taken = [certified([step for step, _ in went[0]])], len(first)
     if path.half:
         return _reversed(path, points[0], went[0], f)
-    ended, changes = [points[0].x], list[float]()  # of cycles, since some were skipped
+    ended, cycles = [points[0].x], Cycles(path.settled, path.steady)
     for cycle in range(path.cycles):
         went = []
         for start, end, fractions in zip((path.cycle[-1], *path.cycle), path.cycle, ways, strict=False):
@@ -378,14 +380,16 @@ def follow(
         largest = max(float(np.abs(step.x).sum()) for way in went for step, _ in way)
         bound = f * went[-1][-1][1]
         off = max(float(point.residual.max()) for point in points[-len(went) :])
-        changes.append(cycle_change(points[-1].x, points[-1 - len(went)].x, path.settled * bound, largest, off))
-        if cycles_settled(changes):
+        room = room_of([(way[-1][0].x, f * way[-1][1]) for way in went], path.ends if path.in_phase else None)
+        cycles.add(points[-1].x, points[-1 - len(went)].x, bound, room, largest, off)
+        if cycles.end:
             break
         ended.append(points[-1].x)
         if skip and cycle + 1 < path.cycles and (times := ahead(ended, bound)) is not None:
             skip(times)
             skipped = limit(ended, bound, times)
-            points[-1], ended, changes = replace(points[-1], x=skipped, shift=np.nan), [skipped], []
+            points[-1], ended = replace(points[-1], x=skipped, shift=np.nan), [skipped]
+            cycles.skipped()
     steps = [step for way in went for step, _ in way]
     ends = [way[-1] for way in went]
     slips = np.cumsum([sum(-step.rest for step, _ in way) for way in went], axis=0)
@@ -421,6 +425,8 @@ def follow(
         load_steps=taken,
         around=Steps(tuple(ways), forces, pressures, f, np.cumsum([step.shift for step in steps])),
         f=f,
+        rooms=np.array(cycles.rooms[-3:]),
+        steady=cycles.steady,
         **anew,
     )
 

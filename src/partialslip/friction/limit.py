@@ -2,13 +2,17 @@
 
 A node beside an end of the stick zone may need hundreds of cycles to come to its bound, while nothing else changes any
 more. Aitken's method finds the limit of cycles in geometric progression from four of them.
+
+Whether a node slips in the steady state is told by the limit of its room up to the bound, and not by the room in the
+last cycle: under mean loads zones whose room is a millionth of f p may slip in the next cycle. Cycles therefore go on
+until each node is known to keep its room or to lose it.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.arrays import Array, Mask
 
 # accuracy: change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
 _REPEATS = 3e-14
@@ -17,6 +21,14 @@ _ROUNDED = 30.0
 # accuracy: changes over a cycle, over those that count as none, that are rounding where they have not fallen for so
 # many cycles
 _SMALL, _RESTLESS = 100.0, 8
+LIMIT = (
+    10.0  # accuracy: changes of the last cycle that may lie between it and the limit, however few cycles went before
+)
+SLIPS = 1e-9  # accuracy: room up to the bound, relative, at which a node slips
+_LOST, _KEPT = (
+    0.5,
+    0.75,
+)  # accuracy: of the room of the last cycle: a limit up to the first is none, from the second on some
 STATES = 4  # accuracy: ends of cycles that are looked at
 _CLEAN = 0.1  # accuracy: of the last change: what the progression may leave unexplained
 _STEADY = 0.3  # accuracy: of 1 - ratio: by how much the ratio may change from cycle to cycle
@@ -68,3 +80,85 @@ def ahead(states: Sequence[Array], bound: Array) -> float | None:
 def limit(states: Sequence[Array], bound: Array, times: float) -> Array:
     """Limit (n,) of the ``states``, ``times`` their last change away (:func:`ahead`), within the ``bound``."""
     return np.clip(states[-1] + (states[-1] - states[-2]) * times, -bound, bound)
+
+
+def room_of(visited: Sequence[tuple[Array, Array]], ends: tuple[int, int] | None) -> Array:
+    """Room (n,) up to the bounds in a cycle, of q and the bounds f p, (n,) each, at its load points: 2 f p - \\|dq\\|
+    between the ``ends`` of the cycle; out of phase, where there are none, the least room up to f p and down to -f p."""
+    if ends:
+        (q1, bound1), (q2, bound2) = (visited[end] for end in ends)
+        return bound1 + bound2 - np.abs(q2 - q1)
+    q, bounds = (np.array(each) for each in zip(*visited, strict=True))
+    room: Array = (bounds - q).min(axis=0) + (bounds + q).min(axis=0)
+    return room
+
+
+def falls(rooms: Sequence[Array] | Array) -> Array:
+    """What the ``rooms`` (n,) of cycles in turn will still lose: of rooms in geometric progression all that follows, by
+    Aitken's method; nan where the last three tell no progression, or where there are fewer."""
+    if len(rooms) < 3:
+        return np.full(len(rooms[-1]), np.nan)
+    fell, fall = -np.diff(rooms[-3:], axis=0)
+    left = np.divide(fall**2, fell - fall, out=np.full(len(fall), np.nan), where=(fall > 0) & (fall < fell))
+    return np.where(fall <= 0, 0.0, left)
+
+
+def lost(rooms: Sequence[Array] | Array) -> Mask:
+    """Nodes (n,) whose room has no limit but none: of room that falls in geometric progression nothing is left, of room
+    that falls with a power of the cycles a part."""
+    return falls(rooms) >= _LOST * rooms[-1]
+
+
+def undecided(rooms: Sequence[Array] | Array, bound: Array, moved: float, cycles: int) -> Mask:
+    """Nodes (n,) of which it is not known yet whether they slip in the steady state.
+
+    Parameters
+    ----------
+    rooms : sequence of (n,) arrays
+        Rooms that q leaves up to the bounds in each of the cycles in turn.
+    bound : (n,) array
+        f times the normal forces.
+    moved : float
+        Largest change of q over the last cycle, in the bound.
+    cycles : int
+        Number of cycles so far: room that falls with a power of them lasts as many changes.
+    """
+    room = rooms[-1]
+    near = (room > SLIPS * bound) & (room <= max(LIMIT, cycles) * moved * bound)
+    if len(rooms) < 2:
+        return near
+    left = falls(rooms)
+    fall = np.maximum(rooms[-2] - room, 0.0)
+    unclear = np.where(np.isnan(left), fall > (1 - _KEPT) * room, (left > (1 - _KEPT) * room) & (left < _LOST * room))
+    return near & unclear
+
+
+class Cycles:
+    """Cycles of one path, in turn: whether they end, and whether the last one is steady.
+
+    Parameters
+    ----------
+    settled : float
+        Largest change of q over the last cycle, in the bound; rounding comes on top.
+    steady : float
+        The same of a steady state.
+    """
+
+    def __init__(self, settled: float, steady: float) -> None:
+        self._settled, self._steady, self._count = settled, steady, 0
+        self.skipped()
+
+    def skipped(self) -> None:
+        """Forget the cycles: those that follow do not begin where they ended."""
+        self.changes, self.rooms = list[float](), list[Array]()
+
+    def add(self, q: Array, before: Array, bound: Array, room: Array, largest: float, off: float) -> None:
+        """Add a cycle that changes the forces ``before`` it (n,) to ``q`` and leaves ``room`` (n,); ``largest`` and
+        ``off`` as for :func:`cycle_change`."""
+        self._count += 1
+        self.changes.append(cycle_change(q, before, self._settled * bound, largest, off))
+        self.rooms.append(room)
+        moved = cycle_change(q, before, bound, largest, off)
+        decided = not undecided(self.rooms, bound, moved, self._count).any()
+        self.end = decided and cycles_settled(self.changes)
+        self.steady = self.end or (decided and moved <= self._steady)

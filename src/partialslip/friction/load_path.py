@@ -3,6 +3,7 @@
 import itertools
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,13 @@ _STRONGEST = 1e4
 _STAGES = 32  # accuracy: fewest stages of a leg that is followed event by event
 
 
+class Missed(NamedTuple):
+    """Work of friction that load steps miss in the last cycle, and the error with which that is known; scaled."""
+
+    work: float
+    error: float
+
+
 @dataclass(frozen=True)
 class Path:
     """Loads at the points of a ``cycle``, scaled: Q, the relative strain of the surfaces due to bulk tension at the
@@ -38,12 +46,14 @@ class Path:
     and |dQ| >= f |dP| from each load point to the next, so that Q drives all slip one way.
 
     Cycles end where one changes the tangential force at no node by more than ``settled`` of its bound, and rounding:
-    where the scene does not tell how many there are, they lead to the steady state.
+    where the scene does not tell how many there are, they lead to the steady state. ``steady`` is the change that
+    counts as none in a steady state, whoever tells how many cycles there are.
 
     ``substeps`` is the smallest number of steps between points. ``ways`` are the steps as ascending fractions up to 1:
     to the last point first, then to each point of the cycle; default: ``substeps`` equal steps. A path that is
     ``followed`` has no steps: where the pressure varies, each leg is followed event by event. ``turns`` tells whether
-    slip is known to turn round on the way.
+    slip is known to turn round on the way. ``missed`` is the work of friction that the steps miss: nothing on a path
+    that is followed, and None where it is not known.
     """
 
     cycle: tuple[tuple[float, ...], ...]
@@ -57,9 +67,11 @@ class Path:
     one_way: bool = False
     ways: tuple[tuple[float, ...], ...] = ()
     settled: float = 0.0
+    steady: float = 0.0
     followed: bool = False
     turns: bool = False
     actuator: float | None = None
+    missed: Missed | None = None
 
     @property
     def fractions(self) -> tuple[tuple[float, ...], ...]:
@@ -150,6 +162,7 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None, on_pin: bool
         half=half,
         one_way=one_way,
         settled=settled,
+        steady=near,
         actuator=actuator,
     )
 

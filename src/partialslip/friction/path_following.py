@@ -386,7 +386,9 @@ class _Leg:
         while True:
             tolerance = self._tolerance()
             room = self._room()
-            worst = int(np.argmin(room / tolerance))
+            # a leg on which nothing moves has no tolerance, and no room
+            beyond = np.divide(room, tolerance, out=np.where(room < 0, -np.inf, 0.0), where=tolerance > 0)
+            worst = int(np.argmin(beyond))
             if room[worst] >= -tolerance[worst]:
                 return
             self._drive(worst)

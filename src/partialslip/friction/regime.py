@@ -17,7 +17,9 @@ _FEW_STEPS = 8
 _MANY = 2  # accuracy: nodes of both contacts beside the stick zone from which on the end slips throughout
 _SLIPS = 1e-6  # accuracy: slip in a cycle, in the largest possible slip, above rounding
 _WORK = 1e-9  # accuracy: dissipated energy, in f P times a displacement of A P, above rounding
-_RATCHETS = 1e-3  # limit: net slip of a cycle, relative to the slip of half a cycle, above which a steady q ratchets
+# limit: net slip of a cycle, in the slip of half a cycle, above which a steady q ratchets: what creeps to its place has
+# less
+_RATCHETS = 1e-3
 
 _REVERSES = f"{PATH_DEPENDENT}between the load points; m, n, q are those of"
 
@@ -76,12 +78,27 @@ def steady_state(
     few = not history.path.followed and history.path.most_steps < _FEW_STEPS
     if anew and few and history.dissipated > _WORK * history.bound.sum():
         steps = "a step" if history.path.most_steps == 1 else f"{history.path.most_steps} steps"
-        notes += (f"slip and dissipated energy are rough: {steps} from load point to load point (load.steps)",)
+        notes += (f"slip near the ends of the contact is rough: {steps} from load point to load point (load.steps)",)
+    unsure = _unsure(history, regime)
     if apart:
-        return SteadyState(regime, notes=notes, slips=slips)
+        return SteadyState(regime, notes=notes, slips=slips, undetermined=unsure)
     permanent = permanent_zone(x, history, stick) if x is not None and history.turns and regime != "ratchets" else None
     centre, half = (stick.right + stick.left) / 2, (stick.right - stick.left) / 2
-    return SteadyState(regime, centre, half, notes, slips, permanent)
+    return SteadyState(regime, centre, half, notes, slips, permanent, unsure)
+
+
+def _unsure(history: History, regime: Regime) -> dict[str, str]:
+    """What the cycles of a ``history`` do not tell, as :attr:`Result.undetermined`."""
+    unsure = {}
+    if regime != "ratchets" and STEADY < history.ratchets <= _RATCHETS:
+        unsure["regime"] = (
+            f"a cycle adds up to {history.ratchets:.1e} times the slip of half a cycle: too little to tell ratcheting "
+            "from creep that ends"
+        )
+    if not history.steady:
+        count = "1 cycle" if history.cycles == 1 else f"{history.cycles} cycles"
+        unsure["steady"] = f"{count} (load.cycles) do not reach the steady state"
+    return unsure
 
 
 def _end_slips(x: Array, history: History, stick: StickInterval) -> tuple[EndSlip, EndSlip]:

@@ -17,7 +17,7 @@ from partialslip.friction.zone_ends import StickInterval
 Errors = dict[str, float]
 
 _NOTHING = 0.01  # accuracy: of what the accuracy allows: errors of steps that matter to nobody
-_MOST_STEPS = 8  # limit: steps from load point to load point that an accuracy of coupled bodies leads to
+_MOST_STEPS = 32  # limit: steps from load point to load point that an accuracy of coupled bodies leads to
 _PROBED = 7  # accuracy: fewest steps from load point to load point with which those of coupled bodies are compared
 _SHEARS = ("change", "q1", "q2")
 

@@ -244,6 +244,14 @@ def within(stick: StickInterval, common: tuple[float, float], vertices: Array) -
     return replace(stick, left=min(left, right), right=right)
 
 
+def sticking_zones(bound: Array, change: Array) -> int:
+    """Number of zones of at least ``_RUN`` neighbouring nodes that stick, from the ``bound`` and the ``change`` (n,) of
+    tangential forces from load point 1 to 2."""
+    sticks = np.concatenate([[False], 2 * bound - np.abs(change) > _STICKS * bound, [False]])
+    turns = np.flatnonzero(np.diff(sticks))
+    return int(np.count_nonzero(turns[1::2] - turns[::2] >= _RUN))
+
+
 def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callable[[Array], Array]) -> list[float]:
     """Points inside the contact at which q leaves the bound f p or -f p, where meshes must be refined.
 

@@ -91,6 +91,29 @@ class Cauchy:
         result /= np.pi
         return result.T.reshape(2, len(edges), len(z))
 
+    def along(self, z: Complex) -> Complex:
+        """Integrals (k, m) at points ``z`` (m,) so close to the axis that far panels see points on it."""
+        origin, way, *_ = self._panels
+        middle, half = _in_v(self._panels)
+        v = middle[:, None] + half[:, None] * _NODES
+        beyond, count, x = way[:, None] * v**2, len(self._values), z.real
+        of_nodes = (self._values * _WEIGHTS * 2 * v * half[:, None]).reshape(count, -1).T
+        # squares of v between which points may be near: the ellipse lies in a circle
+        inner, outer = np.maximum(middle - _NEAR / 2 * half, 0.0) ** 2, (middle + _NEAR / 2 * half) ** 2
+        result = np.empty((len(z), count), complex)
+        for part in np.array_split(np.arange(len(z)), len(z) * v.size // _AT_ONCE + 1):
+            apart = x[part, None] - origin
+            far, size = beyond - apart[..., None], np.abs(apart)
+            point, panel = np.nonzero((size >= inner) & (size <= outer))
+            v_z = np.sqrt(way[panel] * (z[part[point]] - origin[panel]))
+            near = _ellipse((v_z - middle[panel]) / half[panel]) < _NEAR
+            point, panel, v_z = point[near], panel[near], v_z[near]
+            far[point, panel] = np.inf
+            result[part] = np.reciprocal(far, out=far).reshape(len(part), v.size) @ of_nodes
+            np.add.at(result, part[point], self._near(z[part[point]], v_z, panel)[:count].T)
+        result /= np.pi
+        return result.T
+
     def _near(self, z: Complex, v_z: Complex, panel: npt.NDArray[np.int64]) -> Complex:
         """Integrals and derivatives over near panels, one per pair of point and panel, (2 k, pairs).
 

@@ -105,7 +105,8 @@ def rubbing(pressed: Contact, scene: Scene) -> Contact:
     if not friction.varies:
         return replace(pressed, f=friction.f)
     kinks = *shape.kinks, *pressed.scaled(friction.kinks).tolist()
-    bound = Bound(lambda x: friction.at(pressed.places(x)) * shape.pressure(x), kinks)
+    sharp = pressed.scaled(friction.sharp_kinks(pressed.a)).tolist()
+    bound = Bound(lambda x: friction.at(pressed.places(x)) * shape.pressure(x), kinks, sharp)
     return replace(pressed, f=bound.scale, bound=bound)
 
 

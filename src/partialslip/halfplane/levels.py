@@ -9,9 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.arrays import Array
+from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.shape import places_between
 from partialslip.halfplane.turning import Followed, Reached, Turning
 from partialslip.result import PATH_DEPENDENT
 from partialslip.scene import Load
@@ -99,7 +101,10 @@ def _where_slip_turns(pressed: Contact, f: float, load: Load, cycle: Turning) ->
 
 def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list[_Point], known: int) -> Levels | str:
     target = points[known]
-    first = loading(pressed, f, *target, bound=1)
+    try:
+        first = loading(pressed, f, *target, bound=1)
+    except InputError:
+        return "mean loads act, and after the first loading more than one zone sticks; use march"
     left, right = first.ends
     within = cycle.ends[0] - _ROUNDING <= left and right <= cycle.ends[1] + _ROUNDING
     way = tuple((2 * known - 1) * sign for sign in cycle.signs)
@@ -112,7 +117,10 @@ def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list
     if first.left_end_turns() if not before else cycle.left_end_turns(first.zone.half_width):
         return f"{PATH_DEPENDENT}during the first loading; use march"
     for point in before:
-        earlier = loading(pressed, f, *point, bound=1)
+        try:
+            earlier = loading(pressed, f, *point, bound=1)
+        except InputError:
+            return "mean loads act, and at the load point visited first more than one zone sticks; use march"
         if earlier.left_end_turns():
             return f"{PATH_DEPENDENT}during the first loading; use march"
         if not (earlier.ends[0] <= left + _ROUNDING and right - _ROUNDING <= earlier.ends[1]):
@@ -139,10 +147,17 @@ def _before(load: Load, points: list[_Point], known: int) -> list[_Point]:
 def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
     """Whether |q| <= f p up to the other load point and on the way back; if both ends slip the same way, |q| is largest
     at a load point."""
-    p, (q1, q2) = found.cycle.shape.pressure(_PLACES), found.unbounded(_PLACES)
+    kinks = np.array(found.cycle.shape.strong_kinks)
+    x = _PLACES if found.cycle.shape.convex else np.union1d(_PLACES, places_between(kinks, -1.0, 1.0))
+    p, (q1, q2) = found.cycle.shape.pressure(x), found.unbounded(x)
     so_far = [np.zeros_like(p)]
     if found.cycle.zone.s < 0 or found.cycle.gf or not found.cycle.shape.convex:
         changes = load.dQ, load.dsigma, load.dslope
-        stages = [loading(pressed, f, *(share * change for change in changes), bound=2) for share in _SHARES.tolist()]
-        so_far += [stage.traction(_PLACES) for stage in stages]
+        try:
+            stages = [
+                loading(pressed, f, *(share * change for change in changes), bound=2) for share in _SHARES.tolist()
+            ]
+        except InputError:  # more than one zone sticks on the way
+            return False
+        so_far += [stage.traction(x) for stage in stages]
     return all((np.abs(q) <= p + _ROUNDING).all() for dq in so_far for q in (q1 + dq, q2 - dq))

@@ -4,7 +4,6 @@ a first loading under twice the bound. Scaled: lengths by a, tractions by f p0, 
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.mean_bound import mean_load_bound
 from partialslip.halfplane.shape import Shape
-from partialslip.halfplane.slip import dissipation, slip
+from partialslip.halfplane.slip import Worn, dissipation, slip
 from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, UNEVEN_FRICTION, drive, steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
@@ -23,15 +22,6 @@ _NOTHING = StickZone(0.0, 1.0, 1)
 _STAGES = 16  # accuracy: of the way from load point to load point
 _SHARES = np.arange(9) / 8  # of slip zones
 _ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
-
-
-class Worn(NamedTuple):
-    """Slip over half a cycle: points ``x`` (k,), net ``slip`` there (k,), and the energy that a whole cycle dissipates,
-    ``dissipated``; scaled."""
-
-    x: Array
-    slip: Array
-    dissipated: float
 
 
 @dataclass(frozen=True)
@@ -161,8 +151,7 @@ class Loading:
     @property
     def worn(self) -> Worn:
         """Slip over half a cycle, and the energy that a cycle dissipates."""
-        x, slips, dissipated = dissipation(self.zone, self.seen, self.gf)
-        return Worn(self.mirror * x[:: self.mirror], self.turn * slips[:: self.mirror], dissipated)
+        return dissipation(self.zone, self.seen, self.gf).turned(self.mirror, self.turn)
 
     @cached_property
     def turns_round(self) -> bool:
@@ -180,9 +169,13 @@ class Loading:
         tau = +-1, by the integral of its strain, in proportion to
 
             dQ/2 eta + tau c/8 (dsigma + dslope e) sinh(eta) + c^2/32 dslope sinh(2 eta).
+
+        Where the adhered traction of the whole contact has one sign slip only grows, whatever the friction bound: the
+        traction that slip causes elsewhere has this sign, too (an obstacle problem).
         """
-        shares = np.arange(1, _STAGES + 1) / _STAGES
-        zones = stick_zones(shares * self.Qf, shares * self.sf, self.seen, shares * self.gf)
+        if self._pushed(np.clip([-1.0, 1.0, -self.sf / (2 * self.gf) if self.gf else 1.0], -1, 1)).min() >= 0:
+            return False
+        zones = self._stages
         if not (zones.s == self.zone.s).all() or np.isnan(zones.half_width).any():
             return True
         if (np.diff(zones.left, prepend=-1.0) < -_ROUNDING).any() or (
@@ -196,10 +189,24 @@ class Loading:
             slips = self.Qf / 2 * eta + side * c / 8 * (self.sf + self.gf * e) * np.sinh(eta)
             slips += c**2 / 32 * self.gf * np.sinh(2 * eta)
             y = side * (zones.right if side > 0 else -zones.left)[-1] + side * width[-1] * _SHARES
-            pushed = self.Qf / 2 + y / 8 * self.sf + (y**2 - 0.5) / 8 * self.gf
-            if (sign * slips < -_ROUNDING * eta).any() or (sign * pushed < -_ROUNDING).any():
+            if (sign * slips < -_ROUNDING * eta).any() or (sign * self._pushed(y) < -_ROUNDING).any():
                 return True
         return False
+
+    def _pushed(self, y: Array) -> Array:
+        """Adhered traction of the whole contact at ``y``, times a positive factor."""
+        return self.Qf / 2 + y / 8 * self.sf + (y**2 - 0.5) / 8 * self.gf
+
+    @cached_property
+    def _stages(self) -> StickZone[Array]:
+        """Stick zones at stages of the way; NaN where there is not one alone."""
+        shares = np.arange(1, _STAGES + 1) / _STAGES
+        return stick_zones(shares * self.Qf, shares * self.sf, self.seen, shares * self.gf)
+
+    @property
+    def parts(self) -> bool:
+        """Whether slip may reverse, as more than one zone sticks at a stage of the way."""
+        return self.turns_round and not self._simple and bool(np.isnan(self._stages.half_width).any())
 
 
 def loading(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, bound: int) -> Loading:

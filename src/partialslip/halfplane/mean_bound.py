@@ -23,7 +23,7 @@ def mean_load_bound(zone: StickZone[float], shape: Shape, Qf: float, sf: float, 
     loads ``Qf``, ``sf`` and ``gf``, where dq_t is the change of q so far on the way between the load points.
 
     Above it no locked-in mean traction fits under the friction bound all along the way, and the contact ratchets
-    (frictional Melan theorem: Klarbring, Ciavarella and Barber, 2007). At the load points \\|dq_t - dq/2\\| is
+    (frictional Melan theorem: Barber, Klarbring and Ciavarella, 2008). At the load points \\|dq_t - dq/2\\| is
     \\|dq\\|/2; it is larger in between where dq_t is not monotone, which it is for small tension. If slip ``reverses``
     on the way, the stages are not those of the formula: the bound is then that of the load points.
 

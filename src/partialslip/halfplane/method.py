@@ -32,7 +32,7 @@ from partialslip.scene.model import require_carried
 from partialslip.threads import one_thread
 
 _SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
-_RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets, m and n are not reached"
+_RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets"
 
 
 @one_thread
@@ -101,12 +101,13 @@ def solve(
 
 def has_closed_form(scene: Scene) -> bool:
     """Whether the steady state of ``scene``, two similar half-planes under loads in phase, has an exact solution here:
-    by formulas, quadratures or an integral equation; under constant pressure unless sigma_slope is too large."""
-    if not ((scene.presses_anew or scene.load.dslope) and plan(scene).needs("friction")):
+    by formulas, quadratures or an integral equation; under constant pressure unless sigma_slope is too large or f
+    varies so much along x that more than one zone sticks."""
+    if not ((scene.presses_anew or scene.load.dslope or scene.friction.varies) and plan(scene).needs("friction")):
         return True
     try:
         return not closed_form(scene) if scene.presses_anew else bool(_change(scene).cycle)
-    except InputError:  # sigma_slope is too large
+    except InputError:
         return False
 
 
@@ -225,12 +226,14 @@ def _limits(scene: Scene, pressed: Contact, cycle: Loading | Turning | None) -> 
 
 
 def _slip(scene: Scene, pressed: Contact, cycle: Loading | Turning) -> Slip:
-    x, slips, dissipated = cycle.worn
-    stress, unit = pressed.f * pressed.p0, scene.material.A * pressed.f * pressed.p0 * pressed.a
+    worn, stress = cycle.worn, pressed.f * pressed.p0
+    unit = scene.material.A * stress * pressed.a
+    energy = unit * stress * pressed.a
     return Slip(
-        pressed.centre + pressed.a * x,
-        unit * slips,
-        dissipated * unit * stress * pressed.a,
+        pressed.centre + pressed.a * worn.x,
+        unit * worn.slip,
+        energy * worn.dissipated,
+        energy * worn.error if cycle.holds else None,
     )
 
 

@@ -9,11 +9,11 @@ from partialslip.arrays import Array, Indices
 _NEAR = 6  # cost: kinks near a panel, summed directly
 _NARROWEST = 1e-13  # accuracy: width below which panels are not halved
 _DEGREES = 22  # accuracy: coefficients, and nodes, of a panel's polynomial
-_NODES = np.cos(np.pi * (np.arange(_DEGREES) + 0.5) / _DEGREES)
-_TO_COEFFICIENTS = np.polynomial.chebyshev.chebvander(_NODES, _DEGREES - 1).T * 2 / _DEGREES
-_TO_COEFFICIENTS[0] /= 2
+NODES = np.cos(np.pi * (np.arange(_DEGREES) + 0.5) / _DEGREES)
+TO_COEFFICIENTS = np.polynomial.chebyshev.chebvander(NODES, _DEGREES - 1).T * 2 / _DEGREES
+TO_COEFFICIENTS[0] /= 2
 # values at the nodes of each half of a panel from the panel's coefficients
-_VALUES = [np.polynomial.chebyshev.chebvander((_NODES + side) / 2, _DEGREES - 1) for side in (-1, 1)]
+_VALUES = [np.polynomial.chebyshev.chebvander((NODES + side) / 2, _DEGREES - 1) for side in (-1, 1)]
 
 UnitDensity = Callable[[Array, Indices], Array]
 
@@ -56,9 +56,9 @@ class Panels:
             width = (high - low)[:, None]
             stays = (at > low[:, None] - width) & (at < high[:, None] + width)
             gone = np.where(stays, len(ends), parents)
-            x = np.sin((low + high) / 2 + width.T / 2 * _NODES[:, None])
+            x = np.sin((low + high) / 2 + width.T / 2 * NODES[:, None])
             values = self._values(x[..., None], gone)
-            far = _TO_COEFFICIENTS @ (np.concatenate(inherited, axis=1) + (values * weights[gone]).sum(axis=-1))
+            far = TO_COEFFICIENTS @ (np.concatenate(inherited, axis=1) + (values * weights[gone]).sum(axis=-1))
             near = np.sort(np.where(stays, parents, len(ends)), axis=1)[:, : stays.sum(axis=1).max(initial=0)]
         order = np.argsort(np.concatenate([each[0] for each in done]))
         low, high = (np.concatenate([each[i] for each in done])[order] for i in (0, 1))
@@ -79,7 +79,7 @@ class Panels:
         flat_x, angle = x.ravel(), np.arcsin(x).ravel()
         panel = np.maximum(np.searchsorted(self._low, angle, "right") - 1, 0)
         place = (angle - self._middles[panel]) / self._halves[panel]
-        result = _clenshaw(place, self._far, panel)
+        result = clenshaw(place, self._far, panel)
         for which, weights in zip(self._which.T, self._weights.T, strict=True):
             result += weights[panel] * self._values(flat_x, which[panel])
         return result.reshape(x.shape)
@@ -88,7 +88,7 @@ class Panels:
         return self._unit(x, np.minimum(number, self._last))
 
 
-def _clenshaw(place: Array, coefficients: Array, column: Indices) -> Array:
+def clenshaw(place: Array, coefficients: Array, column: Indices) -> Array:
     """Chebyshev sums at ``place`` (n,), each with the ``column`` (n,) of ``coefficients`` (k, columns)."""
     one, two = np.zeros_like(place), np.zeros_like(place)
     for row in coefficients[:0:-1]:

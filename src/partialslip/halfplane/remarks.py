@@ -1,17 +1,18 @@
 """What a result of the exact method leaves undetermined, and its notes."""
 
-from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, Regime
+from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, RATCHETS, Regime
 
 
 def undetermined(regime: Regime, turns: bool, found: object) -> dict[str, str]:
     """Why quantities cannot serve as a reference, by quantity: slip ``turns`` round between the load points, or
-    ``found``, q1 and q2, is a reason instead."""
+    ``found``, q1 and q2, is a reason instead. Where the contact ratchets, the closed form is that of no cycle."""
     if regime in ("sliding", "frictionless"):
         return {}
     if turns:
         reason = f"{PATH_DEPENDENT}between the load points, and one step does not hold"
         return dict.fromkeys(("m", "n", "q", "q1", "q2"), reason)
-    return dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
+    levels = dict.fromkeys(("q1", "q2"), found) if isinstance(found, str) else {}
+    return levels | (dict.fromkeys(("m", "n", "q"), RATCHETS) if regime == "ratchets" else {})
 
 
 def remarks(regime: Regime, turns: bool, undetermined: dict[str, str], slides: str, ratchets: str) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from partialslip.errors import InputError
 _THIN = 1e-12  # accuracy: width of a slip zone below which the stiffness of the stick zone's end is that at this width
 _CHECKED = 1000  # limit: points at which a given pressure is checked
 _EVEN = 1e-9  # limit: tolerance of p(x) - p(-x), relative to the largest p, of an even pressure
+_BETWEEN = (1 - np.cos(np.pi * (np.arange(6) + 0.5) / 6)) / 2  # accuracy: places between two kinks
 NARROW = 1e-5  # accuracy: half-width of a stick zone below which right - left cancels
 
 
@@ -68,12 +69,17 @@ class Shape:
         return self.kinks
 
     @property
+    def sharp_kinks(self) -> tuple[float, ...]:
+        """Kinks beside which points of a slip zone may stick."""
+        return self.strong_kinks
+
+    @property
     def convex(self) -> bool:
         """Whether this is the pressure under a convex profile: the ends of the contact then slip before points
         inside."""
         return True
 
-    @property
+    @functools.cached_property
     def mirrored(self) -> "Shape":
         """The mirror image."""
         return self if self.even else Mirrored(self)
@@ -149,7 +155,7 @@ class Mirrored(Shape):
     def convex(self) -> bool:
         return self._of.convex
 
-    @property
+    @functools.cached_property
     def mirrored(self) -> Shape:
         return self._of
 
@@ -157,11 +163,22 @@ class Mirrored(Shape):
     def strong_kinks(self) -> tuple[float, ...]:
         return tuple(-kink for kink in reversed(self._of.strong_kinks))
 
+    @property
+    def sharp_kinks(self) -> tuple[float, ...]:
+        return tuple(-kink for kink in reversed(self._of.sharp_kinks))
+
     def pressure(self, x: Array) -> Array:
         return self._of.pressure(-x)
 
     def difference(self, t: Array, x: Array) -> Array:
         return -self._of.difference(-t, -x)
+
+
+def places_between(kinks: Array, low: float, high: float) -> Array:
+    """The ``kinks`` (k,) between ``low`` and ``high``, and places between each two of these: where something that is
+    smooth between them may be extreme."""
+    ends = np.unique([low, *kinks[(kinks > low) & (kinks < high)], high])
+    return np.concatenate([ends[1:-1], (ends[:-1] + np.diff(ends) * _BETWEEN[:, None]).ravel()])
 
 
 def _quotient(t: Array, at_t: Array, x: Array, at_x: Array) -> Array:
@@ -241,7 +258,15 @@ class Given(Shape):
 
 class Bound(Given):
     """Friction bound f(x) p where the coefficient of friction f varies along the contact: ``function`` is f times the
-    scaled pressure, and ``scale`` the mean of f over the pressure."""
+    scaled pressure, and ``scale`` the mean of f over the pressure; ``sharp`` are the :attr:`sharp_kinks`."""
+
+    def __init__(self, function: Callable[[Array], Array], kinks: Sequence[float], sharp: Sequence[float]) -> None:
+        super().__init__(function, kinks)
+        self._sharp = tuple(sharp)
+
+    @property
+    def sharp_kinks(self) -> tuple[float, ...]:
+        return self._sharp
 
     @property
     def convex(self) -> bool:

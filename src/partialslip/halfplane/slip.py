@@ -5,16 +5,34 @@ to the upper body. All functions are for positive dQ and dsigma.
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from partialslip.arrays import Array
-from partialslip.halfplane.shape import Rule, Shape, rule_between
+from partialslip.halfplane.shape import Rule, Shape, places_between, rule_between
 from partialslip.result import StickZone
 
-_NODES, _FEWEST = 32, 6  # accuracy: Gauss points in a slip zone, and in each of its pieces
+# accuracy: Gauss points in a slip zone, and in each of its pieces: of the work, and of the rule that tells its error
+_NODES, _FEWEST = (32, 21), (6, 4)
+_HARDLY = 1e-9  # accuracy: width of a slip zone, in a, that is rounding
+_ROUNDING = 1e-9  # accuracy: of slip, in the largest
 _TINY = 1e-300  # accuracy: length that is not zero
+
+
+class Worn(NamedTuple):
+    """Slip over half a cycle: points ``x`` (k,), ascending, net ``slip`` there (k,), and the energy that a whole cycle
+    dissipates, ``dissipated``, with the ``error`` of its quadrature; in A f p0 a and A (f p0 a)^2."""
+
+    x: Array
+    slip: Array
+    dissipated: float
+    error: float
+
+    def turned(self, mirror: int, turn: int) -> "Worn":
+        """The same with x mirrored (``mirror`` -1), and the slip turned round (``turn`` -1)."""
+        return self._replace(x=mirror * self.x[::mirror], slip=turn * self.slip[::mirror])
 
 
 def density(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Array:
@@ -76,19 +94,46 @@ def slip(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Arr
     return result
 
 
-def dissipation(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> tuple[Array, Array, float]:
-    """Points in the slip zones (k,), ascending, with the contact's ends; the slip there (k,); and the energy dissipated
-    in a whole cycle, 2 int f p |slip| dx, in A (f p0 a)^2."""
+def slips_on(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> bool:
+    """Whether all points beside a stick ``zone`` slip in the direction of their traction: at the sharp kinks of p, at
+    places between them, and as close to the stick zone as the nearest kink inside it."""
+    found = []
+    for side, sign in ((1, 1), (-1, zone.s)):
+        beyond = np.abs(side * (np.array(shape.sharp_kinks) - zone.centre) - zone.half_width) / zone.half_width
+        width = 1 - side * zone.centre - zone.half_width
+        if width <= _HARDLY:
+            continue
+        eta = places_between(np.arccosh(1 + beyond), 0.0, float(np.arccosh(1 + width / zone.half_width)))
+        x = zone.centre + side * zone.half_width * np.cosh(eta)
+        found.append(sign * slip(np.clip(x, -1.0, 1.0), zone, shape, gf))
+    slips = np.concatenate([np.zeros(1), *found])
+    return bool(slips.min() >= -_ROUNDING * slips.max())
+
+
+def dissipation(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Worn:
+    """Slip in the slip zones and at the contact's ends, and the energy dissipated in a whole cycle,
+    2 int f p |slip| dx, by a Gauss rule between all kinks of p; its error is the difference from a rule of fewer
+    points."""
+    rules = [_rule(zone, shape, *counts) for counts in zip(_NODES, _FEWEST, strict=True)]
+    points = np.concatenate([[-1.0], *(x for x, _ in rules), [1.0]])
+    slips = slip(points, zone, shape, gf)
+    worn = shape.pressure(points) * np.abs(slips)
+    count = len(rules[0][0])
+    work, other = 2 * rules[0][1] @ worn[1 : count + 1], 2 * rules[1][1] @ worn[count + 1 : -1]
+    of = np.array([0, *range(1, count + 1), len(points) - 1])
+    return Worn(points[of], slips[of], float(work), abs(float(work - other)))
+
+
+def _rule(zone: StickZone[float], shape: Shape, count: int, fewest: int) -> tuple[Array, Array]:
+    """Points in the slip zones, ascending, and weights: ``count`` a zone, but the ``fewest`` at least between kinks."""
     x, weights = [], []
     for low, high in ((-1.0, zone.left), (zone.right, 1.0)):
-        ends = np.array([low, *(kink for kink in shape.strong_kinks if low < kink < high), high])
-        nodes, factors = np.polynomial.legendre.leggauss(max(_NODES // (len(ends) - 1), _FEWEST))
+        ends = np.array([low, *(kink for kink in shape.kinks if low < kink < high), high])
+        nodes, factors = np.polynomial.legendre.leggauss(max(count // (len(ends) - 1), fewest))
         angle, half = np.pi / 2 * (1 + nodes), np.diff(ends)[:, None] / 2
         x.append((ends[:-1, None] + half * (1 - np.cos(angle))).ravel())
         weights.append((half * np.pi / 2 * factors * np.sin(angle)).ravel())
-    points = np.concatenate([[-1.0], *x, [1.0]])
-    slips = slip(points, zone, shape, gf)
-    return points, slips, 2 * float(np.concatenate(weights) @ (shape.pressure(points) * np.abs(slips))[1:-1])
+    return np.concatenate(x), np.concatenate(weights)
 
 
 def _slips(x: Array, zone: StickZone[float], side: int) -> npt.NDArray[np.bool_]:

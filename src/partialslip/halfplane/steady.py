@@ -9,6 +9,7 @@ import numpy as np
 from partialslip.arrays import Array, Indices, Mask
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.shape import NARROW, Conditions, Shape
+from partialslip.halfplane.slip import slips_on
 from partialslip.halfplane.traction import within_bound
 from partialslip.result import StickZone
 
@@ -17,8 +18,8 @@ TOO_STEEP = (
     "exact does not hold: the tension varies so much along x that points inside slip before the ends do; use march"
 )
 UNEVEN_FRICTION = (
-    "friction.f: must vary less along x for exact: points inside slip before the ends do, and more than one zone "
-    "sticks; use march"
+    "friction.f: must vary less along x for exact: points inside slip before the ends do or stick in slip zones, and "
+    "more than one zone sticks; use march"
 )
 _CHUNK = 2**14  # cost: stick zones at a time: their arrays fit the processor's cache
 _CLOSE = 1e-9  # accuracy: Newton step after which only rounding errors remain
@@ -120,8 +121,9 @@ def _solve(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None, checked:
 
 
 def _holds(edge: Array, c: Array, Qf: Array, sf: Array, shape: Shape, gf: Array) -> Mask:
-    """Whether the loads are those of the stick zones, whose ends are stiff, and \\|dq\\| <= 2 f p in them: where the
-    tension varies too much along x, points inside slip before the ends do."""
+    """Whether the loads are those of the stick zones, whose ends are stiff, \\|dq\\| <= 2 f p in them, and all points
+    beside them slip: where the tension or f varies too much along x, points inside slip before the ends do, or points
+    in slip zones stick."""
     at, s = _at(shape, edge, c, gf), np.where(edge < 0, -1, 1)
     found = (np.abs(at.Qf - Qf) < _HELD) & ((np.abs(at.sf - sf) < _HELD * np.maximum(sf, 8)) | (c <= NARROWEST))
     found &= (at.right > 0) & (at.left > 0) & (c <= 1)
@@ -130,7 +132,17 @@ def _holds(edge: Array, c: Array, Qf: Array, sf: Array, shape: Shape, gf: Array)
     for start in range(0, len(numbers), _FEWER):
         part = numbers[start : start + _FEWER]
         found[part] = within_bound(StickZone(*(each[part] for each in zones)), shape, gf[part])
+    if not shape.convex:
+        for number in np.flatnonzero(found).tolist():  # a zone takes as long as all its places together
+            zone = StickZone(float(zones.centre[number]), float(c[number]), int(s[number]))
+            found[number] = slips_on(zone, shape, float(gf[number]))
     return found
+
+
+def admissible(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> bool:
+    """Whether \\|dq\\| <= 2 f p in a stick ``zone`` and all points beside it slip, under any bound."""
+    one = StickZone(np.array([zone.centre]), np.array([zone.half_width]), np.array([zone.s]))
+    return bool(within_bound(one, shape, np.array([gf]))[0]) and slips_on(zone, shape, gf)
 
 
 def _of(gf: Array | None, numbers: Indices | Mask) -> Array | None:

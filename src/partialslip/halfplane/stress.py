@@ -21,6 +21,7 @@ from partialslip.result.fields import AtPoints
 
 _SURFACE = 1e-30  # accuracy: depth of points on the surface, as a fraction of a
 _APART = 1e-12  # accuracy: distance below which breaks are merged, as a fraction of a
+_ALONG = 3000  # cost: points along a surface with many breaks: each sees all panels of the contact
 SURFACE_REACH = 4.0  # limit: half-widths up to which surface stresses are reported
 
 
@@ -226,7 +227,7 @@ class Fields:
                 contact = of if isinstance(of, Contact) else of.contact
                 cauchy, row = self._cauchy(of)
                 if cauchy not in integrals:
-                    integrals[cauchy] = cauchy(at.scaled(contact))
+                    integrals[cauchy] = _integrals(cauchy, at, contact)
                 value, slope = integrals[cauchy][:, row]
                 if isinstance(of, Contact):
                     made[of] = of.p0 * under_pressure(value, -at.depth / of.a * slope, at.side)
@@ -268,13 +269,22 @@ class Fields:
             self._known.update((each, (cauchy, row)) for row, each in enumerate(group))
 
 
+def _integrals(cauchy: Cauchy, at: Points, contact: Contact) -> Complex:
+    """Cauchy integrals and derivatives (2, rows, k); on the surface no derivatives, which count times the depth."""
+    z = at.scaled(contact)
+    if at.depth.any():
+        return cauchy(z)
+    values = cauchy.along(z)
+    return np.stack([values, np.zeros_like(values)])
+
+
 def _summands(state: StressState) -> list[_Acting]:
     return [state.pressed, *(shear for _, shear in state.shears)]
 
 
 def along_surface(surface: Callable[[Array], Array], breaks: Array) -> SurfaceStress:
     """Stresses along the surfaces, from the first to the last of the ``breaks`` (b,), m."""
-    x = sample(breaks)
+    x = sample(breaks, _ALONG)
     return SurfaceStress(x, surface(x), surface)
 
 

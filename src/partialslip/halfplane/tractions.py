@@ -11,12 +11,14 @@ from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.turning import Turning
 from partialslip.result import TractionAt
 
-_POINTS = 101  # display: between neighbouring breaks
+_POINTS, _FEWEST = 101, 9  # display: between neighbouring breaks; between breaks of which there are many
 
 
-def sample(breaks: Array) -> Array:
-    """Points between ``breaks``, closer towards the breaks, where tractions have square roots."""
-    crowd = (1 - np.cos(np.linspace(0, np.pi, _POINTS))) / 2
+def sample(breaks: Array, most: int | None = None) -> Array:
+    """Points between ``breaks``, closer towards the breaks, where tractions have square roots; at about ``most`` of
+    them, fewer between each two breaks."""
+    count = _POINTS if most is None else max(min(_POINTS, most // len(breaks)), _FEWEST)
+    crowd = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
     return np.unique(breaks[:-1, None] + np.diff(breaks)[:, None] * crowd)
 
 

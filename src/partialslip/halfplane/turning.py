@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from partialslip.arrays import Array
+from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate_of
 from partialslip.halfplane.gradual_path.from_zero import MOST_LOADS, from_zero
@@ -14,8 +15,10 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions
-from partialslip.halfplane.loading import Loading, Worn, loading
+from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.shape import Shape
+from partialslip.halfplane.slip import Worn
+from partialslip.halfplane.steady import UNEVEN_FRICTION
 from partialslip.result import StickZone
 
 _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a slip zone inside is not taken
@@ -116,7 +119,7 @@ class Turning:
     @cached_property
     def mean_load_bound(self) -> float:
         """Largest \\|Q_mean\\|/(f P) of a steady state whose half cycle this is: the room that the points that never
-        slip have all along the way (frictional Melan theorem: Klarbring, Ciavarella and Barber, 2007)."""
+        slip have all along the way (frictional Melan theorem: Barber, Klarbring and Ciavarella, 2008)."""
         return gradual_mean_load_bound(self.way)
 
     def loop(self, shares: Array) -> tuple[Array, Array]:
@@ -128,8 +131,7 @@ class Turning:
     @cached_property
     def worn(self) -> Worn:
         """Slip over half a cycle, and the energy that a cycle dissipates."""
-        x, slip, dissipated = slips(self.way)
-        return Worn(self.mirror * x[:: self.mirror], self.turn * slip[:: self.mirror], dissipated)
+        return slips(self.way).turned(self.mirror, self.turn)
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,9 +231,13 @@ def half_cycle(
     if once.final:
         return once
     try:
-        way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts)
+        way = steady(Loads(once.sf, math.pi * once.Qf), once.seen, parts and not once.parts)
         sure = not parts or (not way.parted and pressed.friction_bound.convex)
         holds = sure or certificate_of(way).worst < _HELD
+        if holds:
+            return Turning(once, way)
     except LostError:
-        return once
-    return Turning(once, way) if holds else once
+        pass
+    if once.parts:
+        raise InputError(UNEVEN_FRICTION)
+    return once

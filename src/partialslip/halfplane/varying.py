@@ -12,7 +12,8 @@ from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean_pressure import Mean, PressurePath, PressureStage, common
-from partialslip.halfplane.slip import dissipation
+from partialslip.halfplane.slip import Worn, dissipation
+from partialslip.halfplane.steady import admissible
 from partialslip.result import EndSlip
 from partialslip.scene import Hertz, Scene
 
@@ -22,7 +23,9 @@ _STOPS = np.unique([*np.arange(1, _STAGES) / _STAGES, *_NEAR, *(1 - _NEAR), 1.0]
 _ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
 _EQUAL = 1e-12  # accuracy: relative difference of rates that is rounding
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
-_FEWER_NODES, _FEWER_WEIGHTS = np.polynomial.legendre.leggauss(20)
+# accuracy: Gauss points, of a way and of a slip zone, and the fewest between kinks: of the work, and of the rule that
+# tells its error
+_STEPS, _BETWEEN = (16, 8), (3, 2)
 _SHARES = (1 - np.cos(np.linspace(0, np.pi, 14)))[1:-1] / 2  # of the way, at which points touch or open
 _ALONG = 32  # accuracy: stages of a way at which q is within its bounds
 _PANELS = 16  # accuracy: of the stick zone, on which bounds along the way are integrated
@@ -125,18 +128,18 @@ class Cycle:
     def _kinks(self) -> list[float]:
         return self.mean.places(self.mean.shape.kinks).tolist()
 
-    def slip(self) -> tuple[Array, Array, float]:
+    def slip(self) -> Worn:
         """Points (m), their slip from load point 1 to 2 (m) while they are in contact, and the work dissipated in a
-        cycle (J/m).
+        cycle (J/m), with its error.
 
         A part of the surfaces that slips under the pressure p does the work f p for each length of slip. On the way
         from one load point to the other this is f p s at the end of the way, less the integral of s f dp.
         """
         assert self.change
         unit = self._unit(self.mean)
-        x, slips, _ = dissipation(self.change.zone, self.change.seen, self.change.gf)
-        mirror = self.change.mirror
-        x, slips = self.mean.places(mirror * x[::mirror]), self.change.turn * unit * slips[::mirror]
+        worn = dissipation(self.change.zone, self.change.seen, self.change.gf)
+        worn = worn.turned(self.change.mirror, self.change.turn)
+        x, slips = self.mean.places(worn.x), unit * worn.slip
         low, high = common(self.first, self.second)
         inside = (x > low) & (x < high)
         ends = np.array([low, high])
@@ -153,34 +156,42 @@ class Cycle:
                 slips, np.where(opens, so_far, unit * self.change.slip(self.mean.scaled(places)) - so_far)
             )
         order = np.argsort(x)
-        return x[order], slips[order], sum(self._dissipated(back) for back in (False, True))
+        work, other = (
+            sum(self._dissipated(back, *counts) for back in (False, True))
+            for counts in zip(_STEPS, _BETWEEN, strict=True)
+        )
+        return Worn(x[order], slips[order], work, abs(work - other))
 
     def _unit(self, mean: Contact) -> float:
         """Unit of slip under the pressure of ``mean``, m."""
         return self.scene.material.A * self.scene.friction.f * mean.p0 * mean.a
 
-    def _dissipated(self, back: bool) -> float:
+    def _dissipated(self, back: bool, count: int, fewest: int) -> float:
+        """Work on the way to load point 2, or ``back`` to 1: by ``count`` points a way and a slip zone, the ``fewest``
+        at least between kinks."""
         path, f = PressurePath(self.scene, back), self.scene.friction.f
 
         def slipped(stage: PressureStage, weight: Callable[[Array, Array], Array]) -> float:
             """Integral over the contact of |slip| since the beginning of the way, times the ``weight``."""
             now, mean, change = stage
             unit, total = self._unit(mean), 0.0
-            stick, kinks = now.scaled(stage.stick), now.scaled(mean.places(mean.shape.strong_kinks))
+            stick, kinks = now.scaled(stage.stick), now.scaled(mean.places(mean.shape.kinks))
             for low, high in ((-1.0, stick[0]), (stick[1], 1.0)):
                 inner = [kink for kink in kinks if low < kink < high]
                 angles = np.arccos(np.clip(np.unique([low, *inner, high]), -1, 1))[::-1]
                 half = np.diff(angles)[:, None] / 2
-                angle = (angles[:-1, None] + half * (1 + _FEWER_NODES)).ravel()
+                nodes, weights = np.polynomial.legendre.leggauss(min(count, max(2 * count // len(half), fewest)))
+                angle = (angles[:-1, None] + half * (1 + nodes)).ravel()
                 y = np.cos(angle)
                 amount = np.abs(unit * change.slip(mean.scaled(now.places(y))))
-                total += float((half * _FEWER_WEIGHTS).ravel() @ (amount * weight(y, np.sin(angle))))
+                total += float((half * weights).ravel() @ (amount * weight(y, np.sin(angle))))
             return total
 
         last = path.stage(1.0)
         end = last.now
         work = slipped(last, lambda y, sine: end.a * sine * end.p0 * end.shape.pressure(y))
-        for share, weight in zip((1 + _FEWER_NODES) / 2, _FEWER_WEIGHTS / 2, strict=True):
+        shares, weights = np.polynomial.legendre.leggauss(count)
+        for share, weight in zip((1 + shares) / 2, weights / 2, strict=True):
             stage = path.stage(float(share))
             uniform, turned = path.pressed(stage.now)
             work -= weight * slipped(stage, lambda y, _, u=uniform, t=turned: u + t * y)  # type: ignore[misc]
@@ -203,6 +214,8 @@ def steady_cycle(scene: Scene) -> Cycle:
     ends, room = PressureStage(second, mean, change).stick, _ROUNDING * mean.a
     ways: list[EndSlip] = ["forwards" if sign > 0 else "backwards" for sign in change.signs]
     inside = left - room <= ends[0], ends[1] <= right + room
+    if all(inside) and not admissible(change.zone, change.seen, change.gf):
+        inside = False, False
     slips = (ways[0] if inside[0] else "part of the cycle", ways[1] if inside[1] else "part of the cycle")
     if not all(inside):
         return Cycle(scene, first, second, mean, None, slips, False)

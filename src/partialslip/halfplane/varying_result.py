@@ -90,7 +90,7 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
     traction = Traction(x, tractions.at(x), tractions.at, breaks)
     return replace(
         Result.of("exact", state, largest.a, largest.p0, traction, clock),
-        slip=Slip(*cycle.slip()) if cycle and cycle.change and regime != "ratchets" else None,
+        slip=_slip(cycle) if cycle and cycle.change and regime != "ratchets" else None,
         settings={"model": "two half-planes, steady state under varying pressure"},
         limits=_limits(scene, cycle) if cycle else {},
         certificate=cycle.change.certificate if cycle and cycle.change else {},
@@ -100,6 +100,12 @@ def solve_varying(scene: Scene, plan: Plan, started: bool, clock: Clock) -> Resu
         path_dependent=turns,
         contact_ends=(first.ends, second.ends),
     )
+
+
+def _slip(cycle: Cycle) -> Slip:
+    """Slip of the ``cycle``; the error of its work is not known where slip reverses on the way."""
+    worn = cycle.slip()
+    return Slip(worn.x, worn.slip, worn.dissipated, None if cycle.turns_round else worn.error)
 
 
 def _regime(scene: Scene, cycle: Cycle | None) -> Regime:

@@ -9,7 +9,7 @@ from partialslip.gradual import turns_round
 from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.gradual_table import tabled
 from partialslip.halfplane.hertz import HertzShape
-from partialslip.halfplane.turning import half_cycle
+from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.result import StickZone
 
 
@@ -27,11 +27,10 @@ def stick_zone(
     A stick zone is the zone of the tractions: \\|dq\\| is less than 2 f p between the load points. Where slip does not
     turn round on the way it follows from the consistency conditions (:func:`one_step_zone`), a million in about a
     second. Elsewhere (docs/theory.md, section 7) arrays of loads of a Hertz contact take their zones from a table,
-    within 1e-6 a of the solver, where it has them; it goes up to dsigma = 10.4 f p0. Where an inner zone slips it has
-    only loads up to 9.2 f p0 under which all points that slipped inside slip again at the left. Each other pair of
-    loads, and a single pair, takes the solver, one after the other: about half a second, one to twenty where an inner
-    zone slips. A thousand of these take an hour, so leave them out of large arrays: they are those for which
-    :func:`partialslip.halfplane.gradual_table.tabled` has NaN.
+    within 1e-6 a of the solver; under other profiles each pair of loads takes the solver, about half a second. Where a
+    zone inside the stick zone slips, too, the table has only loads up to 9.2 f p0 under which all points that slipped
+    inside slip again at the left. Of such loads the solver takes one to twenty seconds a pair: an array has NaN there,
+    at once, and only a single pair of loads is solved.
 
     Where the loads of an array make the contact slide, \\|dQ\\| >= 2 f P, the stick zone is NaN, and
     :attr:`StickZone.slides` is true. Numbers give numbers; a single pair of loads that slides is an error.
@@ -49,7 +48,8 @@ def stick_zone(
     checked : bool
         As of :func:`one_step_zone`.
 
-    Where the zone under gradual loads is not known, it is NaN with s not 0; an error for numbers.
+    Where the zone under gradual loads is not known, or takes a solver for each pair, it is NaN with s not 0; an error
+    for numbers if it is not known.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def stick_zone(
     f_, dQ_, dsigma_, dslope_ = loads
     Qf, sf = np.abs(dQ_) / (2 * f_ * contact.P), np.abs(dsigma_) / (f_ * contact.p0)
     turned = turns_round(Qf, sf, zone.s, -np.abs(zone.centre - contact.centre) / contact.a, zone.half_width / contact.a)
-    turned = (turned | (not contact.friction_bound.convex)) & (dslope_ == 0) & ~zone.slides
+    turned = (turned | (not contact.friction_bound.convex)) & (dslope_ == 0) & ~np.isnan(zone.half_width)
     if not turned.any():
         return zone
     centre, half_width, s = (np.array(values) for values in zone)
@@ -71,17 +71,29 @@ def stick_zone(
         centre[turned], half_width[turned], s[turned] = (
             contact.centre + side * found.centre,
             contact.a * found.half_width,
-            found.s,
+            np.where(found.s == 0, s[turned], found.s),
         )
-        turned &= np.isnan(centre)
+        turned[:] = False
+    parts = turned.ndim == 0 or not contact.friction_bound.convex
     for index in map(tuple, np.argwhere(turned)):
-        cycle = half_cycle(contact, *(float(load[index]) for load in loads))
-        if not cycle.holds and turned.ndim == 0:
+        known, mirror = _solved(contact, [float(load[index]) for load in loads], parts)
+        if turned.ndim == 0 and np.isnan(known.half_width):
             raise InputError(
                 f"dQ = {dQ_}, dsigma = {dsigma_}: slip turns round on the way, and the zone of gradual loads is not "
                 "known; one_step_zone has that of a single step"
             )
-        known = cycle.zone if cycle.holds else StickZone(np.nan, np.nan, cycle.zone.s)
-        centre[index] = contact.centre + cycle.mirror * known.centre * contact.a
+        centre[index] = contact.centre + mirror * known.centre * contact.a
         half_width[index], s[index] = known.half_width * contact.a, known.s
     return StickZone(centre[()], half_width[()], s[()])
+
+
+def _solved(contact: Contact, loads: list[float], parts: bool) -> tuple[StickZone[float], int]:
+    """The stick zone under ``loads``, for positive changes, and -1 if x is mirrored; NaN if it is not known, or,
+    without ``parts``, if a zone inside slips."""
+    try:
+        cycle = half_cycle(contact, *loads, parts=parts)
+    except InputError:  # more than one zone sticks on the way
+        return StickZone(np.nan, np.nan, 1), 1
+    if not cycle.holds or (not parts and isinstance(cycle, Turning) and cycle.way.opens):
+        return StickZone(np.nan, np.nan, cycle.zone.s), cycle.mirror
+    return cycle.zone, cycle.mirror

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.judge.means import Pair, integrals, means, paired
-from partialslip.result import Result, Traction
+from partialslip.result import RATCHETS, Result, Traction
 from partialslip.scene import Scene
 
 NORM = "norm"
@@ -95,14 +95,24 @@ def _absent(quantity: str, reference: Result, scene: Scene) -> str:
     if reference.regime == "sliding":  # q = f p, where it is known
         return "the contact slides" if quantity in ("m", "n", "dQ") else reference.undetermined.get("q", "")
     if reference.regime == "ratchets":
-        return "the contact ratchets: its steady state is not reached"
+        return RATCHETS
     if quantity == "dQ" and not scene.load.in_phase:
         return "Q and sigma are out of phase: dq is the range of q at each point, and need not add up to dQ"
     return ""
 
 
+def unsteady(result: Result, reference: Result) -> str:
+    """Return which of both alone is not of the steady state, and why; empty if both are, or none is."""
+    calls = [
+        f"{each.method}: {each.undetermined['steady']}" for each in (result, reference) if "steady" in each.undetermined
+    ]
+    return calls[0] if len(calls) == 1 else ""
+
+
 def _undetermined(quantity: str, result: Result, reference: Result, unknown: Mapping[str, str]) -> str:
     """Return why the quantity is ``unknown``, or which method leaves it undetermined and why; empty if it is known."""
+    if quantity in _SHEAR and quantity != "dQ" and (why := unsteady(result, reference)):
+        return why
     key = "q" if quantity == "q_max" else quantity
     if key in unknown:
         return unknown[key]

@@ -15,7 +15,7 @@ _STICK = ("a", "m", "n", "p", "q")  # with a stick zone
 _OTHERS: Mapping[str, tuple[str, ...]] = {
     "sliding": ("regime", "a", "p", "q"),  # q = f p
     "frictionless": ("regime", "a", "p", "q"),  # q = 0
-    "ratchets": ("regime", "a", "p"),  # no steady shear to ask for
+    "ratchets": ("regime", *_STICK),  # asked for, and never judged: there is no steady state
 }
 #: Quantities that must be judged where both results have them and they have a bar: what comes beside a, p and q where
 #: the contact is not even, the pressure varies, or the shear at the load points is known.

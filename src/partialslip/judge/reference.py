@@ -1,11 +1,14 @@
 """The reference of a scene: chosen here and nowhere else, for run, score, verify, fatigue, map and the book."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from partialslip.gradual import may_turn_round
+from partialslip.judge.known import estimated
 from partialslip.methods import METHODS
 from partialslip.plan import reduced
+from partialslip.result import Result
+from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
 
 ALL_EFFECTS = "all effects"  # name of the result in which no effect is forced off
@@ -45,14 +48,17 @@ def reference(scene: Scene) -> Reference:
     return Reference("exact")
 
 
-def reference_among(scene: Scene, methods: Iterable[str]) -> str | None:
-    """Return the name of the reference among the ``methods`` that have solved ``scene``; None without methods.
+def reference_among(scene: Scene, results: Mapping[str, Result] | Mapping[str, ResultRecord]) -> str | None:
+    """Return the name of the reference among the ``results`` of ``scene`` by method; None without results.
 
     The reference is the result with all effects, else that of :func:`reference`, else the first of exact, march, fem
-    and equivalent. For finite and for unlike bodies, where nothing is judged, it is the first of these: the errors are
-    what half-planes leave out.
+    and equivalent; of these a result that tells its errors goes before one that does not. For finite and for unlike
+    bodies, where nothing is judged, it is the first: the errors are what half-planes leave out.
     """
-    known = set(methods)
-    alone = len(known) == 1  # what is known exactly of the scene, which may take seconds, then decides nothing
-    first = () if alone or scene.finite or not scene.material.alike else (reference(scene).method,)
-    return next((name for name in (ALL_EFFECTS, *first, *METHODS) if name in known), None)
+    if ALL_EFFECTS in results:
+        return ALL_EFFECTS
+    # what is known exactly of the scene, which may take seconds, decides nothing where there is one result
+    judged = len(results) > 1 and not scene.finite and scene.material.alike
+    first = (reference(scene).method,) if judged else ()
+    names = [name for name in (*first, *METHODS) if name in results]
+    return next((name for name in names if not judged or estimated(results[name], name)), next(iter(names), None))

@@ -9,7 +9,8 @@ from typing import NamedTuple, Self, TypeVar
 import numpy as np
 
 from partialslip.bars import BARS, CERTIFICATE_BAR
-from partialslip.judge.measures import Measure
+from partialslip.judge.known import base, error_of
+from partialslip.judge.measures import Measure, unsteady
 from partialslip.result import Result
 from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
@@ -128,15 +129,18 @@ def read_to(quantity: str, result: Result | ResultRecord) -> float:
 
 
 def plus_estimate(bar: Bar, quantity: str, reference: Result) -> Bar:
-    """Return the bar plus the error estimate of the ``reference``.
+    """Return the bar plus the error estimate of the ``reference``; none without an estimate.
 
     The estimate's share of the state at the beginning does not count: every method is given the same state. Neither
     does that of a table, which results of earlier versions have.
     """
-    key = quantity.removesuffix("_1").removesuffix("_2")
-    given = sum(reference.shares.get(source, {}).get(key, 0.0) for source in ("table", "start"))
-    own = reference.estimate.get(key, 0.0) - given
-    if bar.value is None or not own > 0:
+    if bar.value is None or quantity == "regime":
+        return bar
+    own = error_of(reference, quantity, reference.method)
+    if math.isnan(own):
+        return Bar(None, f"{reference.method} has no error estimate of {quantity}")
+    own -= sum(reference.shares.get(source, {}).get(base(quantity), 0.0) for source in ("table", "start"))
+    if not own > 0:
         return bar
     if own > bar.value:
         return Bar(None, f"{reference.method} itself is known to {own:.1e} only")
@@ -159,7 +163,7 @@ def decide(measure: Measure, bar: Bar | None, result: Result) -> Verdict:
         bar=None if bar is None or measure.undetermined else bar.value,
         reason=reason,
         scale=measure.scale,
-        estimate=result.estimate.get(measure.quantity.removesuffix("_1").removesuffix("_2")),
+        estimate=result.estimate.get(base(measure.quantity)),
     )
 
 
@@ -186,20 +190,27 @@ def judge_regime(
 ) -> Verdict:
     """Judge the name of the regime of ``result`` against ``reference``, with ``bars`` by quantity.
 
-    The regime is not judged in four cases: no quantity has a bar; the slip or stick zone that distinguishes the two
-    names is narrower than the bars of m and n; the mean of Q is nearer to its bound, in f P, than these bars in a: the
-    room for it is an integral over the stick zone; the stick zone is ``unknown`` (by quantity, why).
+    The regime is not judged in seven cases: no quantity has a bar; the reference has no error estimate of a stick zone;
+    the slip or stick zone that distinguishes the two names is narrower than the bars of m and n, or than the
+    reference's estimates; the mean of Q is nearer to its bound, in f P, than these bars in a: the room for it is an
+    integral over the stick zone; one of both ratchets, and slip of the other adds up, too, but less than it calls
+    ratcheting; one result alone is not of the steady state; the stick zone is ``unknown`` (by quantity, why).
     """
     found, true = result.regime, reference.regime
     own = bars.get("regime", Bar(1.0))
     known = [bar.value for bar in bars.values() if bar.value is not None]
-    width = max((bars[key].value or 0.0 for key in ("m", "n") if key in bars), default=0.0)
+    own_errors = [error_of(reference, key, reference.method) for key in "mn" if reference.m is not None]
+    width = max((*(bars[key].value or 0.0 for key in "mn" if key in bars), *own_errors), default=0.0)
     if own.value is None or not known:
         outcome, reason = Outcome.NOT_JUDGED, own.reason or NO_BAR
     elif found == true:
         outcome, reason = Outcome.PASSED, ""
     elif "m" in unknown:
         outcome, reason = Outcome.NOT_JUDGED, unknown["m"]
+    elif not all(map(math.isfinite, own_errors)):
+        outcome, reason = Outcome.NOT_JUDGED, f"{reference.method} has no error estimate of m and n"
+    elif why := unsteady(result, reference) or _untold(result, reference):
+        outcome, reason = Outcome.NOT_JUDGED, why
     elif near := _too_near(result, reference, width * reference.a) or _barely(result, reference, scene, width):
         outcome, reason = Outcome.NOT_JUDGED, near
     else:
@@ -222,6 +233,16 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
     if (names == _TENSIONS or "sliding" in names) and zone.stick_half_width <= width:
         return "the stick zone is narrower than the bar"
     return ""
+
+
+def _untold(result: Result, reference: Result) -> str:
+    """Return which result does not tell whether it ratchets, as the other one does, and why."""
+    if "ratchets" not in {result.regime, reference.regime}:
+        return ""
+    calls = (
+        f"{each.method}: {each.undetermined['regime']}" for each in (result, reference) if "regime" in each.undetermined
+    )
+    return next(calls, "")
 
 
 def _barely(result: Result, reference: Result, scene: Scene, share: float) -> str:

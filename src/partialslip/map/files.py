@@ -10,6 +10,7 @@ from partialslip.map.varying import VaryingMap
 from partialslip.map.varying_figure import varying_svg
 from partialslip.output.files import csv_text, write_texts
 from partialslip.report import rows
+from partialslip.result import RATCHETS
 from partialslip.scene import Scene
 
 
@@ -82,8 +83,7 @@ def place(data: StickMap | VaryingMap) -> list[str]:
     if point.missing:
         return [f"{name}: {point.missing}", *left_out]
     assert exact
-    ends = ", ".join(f"{key} = {rows.value(exact, key)}" for key in ("m", "n"))
-    reached = ", which are not reached" if exact.regime == "ratchets" else ""
+    ends = ", ".join(f"{key} = {rows.value(exact, key)}" for key in ("m", "n")) if exact.steady else RATCHETS
     mirrored = " (dQ and dsigma differ in sign: on the map m and n change places)" if point.mirrored else ""
     limits = rows.limits(exact, data.scene.units)
-    return [f"{name}: {exact.regime}, {ends}{reached}{mirrored}", *filter(None, [limits]), *left_out]
+    return [f"{name}: {exact.regime}, {ends}{mirrored}", *filter(None, [limits]), *left_out]

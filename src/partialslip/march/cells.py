@@ -7,6 +7,7 @@ from scipy.interpolate import PchipInterpolator, PPoly
 
 from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
+from partialslip.scene import Friction
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 # accuracy: distance, in widths of the wider cell, within which pairs of cells are integrated in closed form
@@ -28,6 +29,26 @@ def graded_cells(points: Array, size: float | Array, growth: float) -> Array:
         steps = _growing(first, growth, middle), _growing(last, growth, right - left - middle)
         vertices += [left + steps[0][1:], right - steps[1][-2::-1]]
     return np.concatenate(vertices)
+
+
+def nearest(points: Array) -> Array:
+    """Distance of each of the ``points`` (k,) from the nearest other one."""
+    order = np.argsort(points)
+    gaps = np.diff(points[order], prepend=-np.inf, append=np.inf)
+    result = np.empty(len(points))
+    result[order] = np.minimum(gaps[1:], gaps[:-1])
+    return result
+
+
+def friction_on(friction: Friction, places: Array) -> Array:
+    """Means (c,) of the coefficient of ``friction`` over the cells between ``places`` (c + 1,), m: no dip is lost."""
+    if not friction.varies:
+        return np.full(len(places) - 1, friction.f)
+    kinks = np.array(friction.kinks)
+    ends = np.union1d(places, kinks[(kinks > places[0]) & (kinks < places[-1])])
+    f = friction.at(ends)
+    sums = np.add.reduceat(np.diff(ends) * (f[1:] + f[:-1]) / 2, np.searchsorted(ends, places[:-1]))
+    return sums / np.diff(places)
 
 
 def _growing(size: float, growth: float, distance: float) -> Array:

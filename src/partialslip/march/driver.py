@@ -7,7 +7,7 @@ Scaled: lengths by the unit of the problem, forces by P, displacements by A P.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -19,13 +19,14 @@ from partialslip.friction.load_path import Path
 from partialslip.friction.regime import doubts
 from partialslip.friction.restart import begun, end_state
 from partialslip.friction.step_errors import Errors
+from partialslip.friction.work import work, work_error
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march.cells import off_cells, on_cells
-from partialslip.result import Clock, Result, Slip, SteadyState, Traction
+from partialslip.result import Clock, Pace, Result, Slip, SteadyState, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
 
-_SHARE = 1 / 3  # cost: largest part of the remaining CPU seconds for one mesh
+_LEFT = 3.0  # cost: times the seconds of the next mesh that must be left: finite elements follow in the same run
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,8 @@ class LastLevel:
     contact_ends : two of (float, float) or None
     notes : tuple of str
         On the load steps.
+    undetermined : mapping of str to str
+        Why quantities are not determined.
     """
 
     a: float
@@ -83,6 +86,7 @@ class LastLevel:
     counts: Mapping[str, int]
     contact_ends: tuple[tuple[float, float], tuple[float, float]] | None
     notes: tuple[str, ...] = ()
+    undetermined: Mapping[str, str] = field(default_factory=dict)
 
 
 class CellProblem(ABC, Generic[L]):
@@ -133,10 +137,9 @@ class CellProblem(ABC, Generic[L]):
     def step_errors(self, level: L) -> Errors:
         """Errors due to the load steps."""
 
-    def likely(self, level: L, count: int, spent: float) -> float:
-        """CPU seconds that a mesh with ``count`` ends of cells is likely to take, as the mesh of the ``level`` took
-        ``spent`` ones; infinite: there is to be none."""
-        return float(spent * (count / len(level.vertices)) ** 3)
+    def too_large(self, level: L, count: int) -> bool:  # noqa: ARG002
+        """Whether a mesh with ``count`` ends of cells after that of the ``level`` is out of proportion."""
+        return False
 
     def excess(self, meshed: Errors, stepped: Errors) -> Errors:
         """Errors ``meshed`` over what is allowed: at most 1 if finer cells are not needed, or of no use: they do not
@@ -157,22 +160,23 @@ class CellProblem(ABC, Generic[L]):
 
 
 def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Result, L]:
-    """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the rest of
-    the allowance of its clock does not suffice. Returns the result, and the last level."""
+    """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the next
+    mesh does not fit the allowance of its clock; errors are estimated in any case. Returns the result, and the last
+    level."""
     level: L | None = None
+    before: L | None = None
     clock, errors = problem.clock, Errors()
     shares: dict[str, Errors] = {}
-    meshes, iterations, spent = 0, 0, 0.0
+    meshes, iterations, pace = 0, 0, Pace(clock)
     place, last = 0.0, len(problem.meshes) - 1
     while True:
         mesh = _mesh_at(problem.meshes, place)
-        if level:
-            likely = problem.likely(level, len(problem.cells(level, mesh)), spent)
-            if likely == math.inf or (meshes > 1 and likely > _SHARE * clock.remaining()):
-                break
-        began = clock.cost().cpu_s
+        spent = bool(errors) and not pace.fits(_LEFT)
+        if level and (spent or problem.too_large(level, len(problem.cells(level, mesh)))):
+            break
         before, level = level, problem.solve(level, mesh)
-        spent, meshes = clock.cost().cpu_s - began, meshes + 1
+        meshes += 1
+        pace.took()
         iterations += level.history.iterations if level.history else 0
         halfway = False
         if before and meshes > problem.coarse:
@@ -195,7 +199,8 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
         shares["start"] = lost
         errors = {key: error + lost.get(key, 0.0) for key, error in errors.items()}
     counts = {"meshes": meshes, "iterations": iterations}
-    return _result(problem, level, errors, shares, counts, notes), level
+    other = before.history if before and errors else None
+    return _result(problem, level, other, errors, shares, counts, notes), level
 
 
 def _mesh_at(meshes: Sequence[tuple[float, float]], place: float) -> tuple[float, float]:
@@ -207,6 +212,7 @@ def _mesh_at(meshes: Sequence[tuple[float, float]], place: float) -> tuple[float
 def _result(
     problem: CellProblem[L],
     level: L,
+    other: History | None,
     errors: Errors,
     shares: Mapping[str, Errors],
     counts: Mapping[str, int],
@@ -223,7 +229,13 @@ def _result(
         places = problem.places(level)
         p, q = (off_cells(scene.P * forces, places) for forces in (answer.pressed, history.end[0]))
         state = end_state(scene, p, q, errors, history, np.diff(level.vertices))
-        slip = Slip(traction.x, history.slip[answer.cells] * unit, history.dissipated * unit * scene.P)
+        off, energy = work_error(history, other, errors), unit * scene.P
+        slip = Slip(
+            traction.x,
+            history.slip[answer.cells] * unit,
+            work(history) * energy,
+            None if off is None else off * energy,
+        )
     return replace(
         Result.of("march", found, answer.a, answer.p0, traction, problem.clock),
         state=state,
@@ -245,4 +257,5 @@ def _result(
         shares=shares,
         notes=found.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),
         contact_ends=answer.contact_ends,
+        undetermined=answer.undetermined,
     )

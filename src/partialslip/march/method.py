@@ -37,8 +37,8 @@ def solve(
     start : State, optional
         State in which the path of the loads begins; default: no shear.
     allowance : Allowance, optional
-        CPU seconds. From the third mesh on, a mesh is not begun if it is likely to take more than a third of the
-        remaining seconds. Load steps are compared with finer steps once.
+        CPU seconds. Once the errors are estimated, a mesh is not begun that does not fit
+        (:class:`partialslip.result.Pace`). Load steps are compared with finer steps once.
     added : callable, optional
         ``added(places) -> (c, c)``: what unit shear forces on cells with ends at ``places`` (c + 1,), m, add to the
         mean displacements of the cells of half-planes along x, in A. Of bodies of like materials.

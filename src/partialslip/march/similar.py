@@ -4,7 +4,6 @@ Shear is constant on cells, refined towards the ends of the contact and of the c
 """
 
 import itertools
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -21,14 +20,22 @@ from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
-from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, within
+from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, sticking_zones, within
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
 from partialslip.halfplane.stress import SURFACE_REACH, along_surface
 from partialslip.halfplane.tractions import CellTractions
 from partialslip.march import driver
 from partialslip.march.cell_stress import CellStresses
-from partialslip.march.cells import compliance, graded_cells, norm_parts, on_cells, relative_change
+from partialslip.march.cells import (
+    compliance,
+    friction_on,
+    graded_cells,
+    nearest,
+    norm_parts,
+    on_cells,
+    relative_change,
+)
 from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
 from partialslip.plan import Plan
@@ -44,7 +51,9 @@ _INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kin
 # cost: Excess of errors up to which the next mesh is halfway, which mostly divides them by 4 to 20; the same of q, q1
 # and q2 after the first step, when halfway meshes hardly reduce the estimates of these
 _NEARLY = 3.0, 0.7
-_PASSING = 32.0  # cost: the same at kinks that neither q1 nor q2 has, and at kinks of the coefficient of friction
+_PASSING = (
+    32.0  # cost: the same at kinks that neither q1 nor q2 has, and, at most, at kinks of the coefficient of friction
+)
 _WORK = 5e11  # limit: cells^3 times load steps of a mesh
 _LEG = 6.0  # cost: work of a leg that is followed while cells touch and open, over that of a load step (measured)
 _HALVED = 1.7  # accuracy: growth that is less reduced is that of a halfway mesh: 2 times is usual, sqrt(2) halfway
@@ -68,6 +77,7 @@ _CHANGED, _CHANGED_HALFWAY = (0.4, 0.35), 0.5
 # accuracy: the same where slip turns round, in those: what the way locks in does not fall with each mesh (measured: of
 # 196 scenes 13 were beyond, at most 3.9 times)
 _LOCKED_IN = 2.0
+_SEVERAL = "more than one zone sticks, as the coefficient of friction varies"
 Added = Callable[[Array], Array]
 
 
@@ -116,19 +126,17 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         super().__init__(scene, start, clock, path, (frame.centre, frame.a), meshes)
         self._ends = [*self.normal.ends, *self.normal.within(scene.profile.kinks)]
         self._inner = self.normal.within(finest(start.q.x)) if start else []
-        self._passing = self.normal.within(scene.friction.sharp_kinks(self.length))
+        self._friction = self.normal.within(scene.friction.sharp_kinks(self.length))
 
     def cells(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> Array:
-        return _cells(self._ends, self._inner, self._passing, level, *mesh)
+        return _cells(self._ends, self._inner, self._friction, level, *mesh)
 
-    def likely(self, level: SimilarLevel, count: int, spent: float) -> float:
+    def too_large(self, level: SimilarLevel, count: int) -> bool:
         history = level.history
         if not history:
-            return math.inf
+            return True
         one = _LEG if history.path.followed and history.path.presses_anew else 1.0
-        if one * history.load_steps * count**3 > _WORK:
-            return math.inf
-        return super().likely(level, count, spent)
+        return one * history.load_steps * count**3 > _WORK
 
     def solve(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> SimilarLevel:
         # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a
@@ -159,6 +167,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         found = steady_state(scene, history, level.stick, 1.0, x=level.x, common=normal.common if anew else None)
         q1, q2 = (scene.P / frame.a * q / widths for q in (history.q1, history.q2)) if history else (0 * x, 0 * x)
         known = found.centre is not None
+        several = scene.friction.varies and history and sticking_zones(history.bound, history.change) > 1
         before = normal.first if anew else None
         tractions = CellTractions(frame, normal.second, before, level.vertices, q1, q2, known)
         counts = {
@@ -180,6 +189,8 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
             model="two half-planes, exact pressure, cells of constant shear",
             counts=counts,
             contact_ends=(normal.first.ends, normal.second.ends) if anew or frame.centre else None,
+            undetermined=dict.fromkeys("mn", _SEVERAL) if several else {},
+            notes=(f"m, n: {_SEVERAL}: those of the one with the most room are told",) if several else (),
         )
 
 
@@ -199,23 +210,28 @@ def add_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock:
 
 
 def _cells(
-    ends: list[float], inner: list[float], passing: list[float], level: SimilarLevel | None, size: float, growth: float
+    ends: list[float], inner: list[float], friction: list[float], level: SimilarLevel | None, size: float, growth: float
 ) -> Array:
     """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of
-    a larger size at ``inner`` kinks of q and at the kinks on that level, the largest at those that are ``passing``.
+    a larger size at ``inner`` kinks of q and at the kinks on that level, the largest at those that are passing.
 
     Cells are small compared with the distance of neighbouring ends: q is steep in narrow slip zones and stick zones.
+    Each kink of the coefficient of ``friction`` is an end of a cell, and as many cells as ``growth`` tells lie
+    between two of them: no dip is left out.
     """
     fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
-    gaps = np.diff(fine)
-    gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps))
+    bends = apart(friction, _SMALLEST, fine.tolist())[len(fine) :]
+    gap = nearest(np.array([*fine, *bends]))
     moving = level.passing if level else []
     lasting = [kink for kink in (level.kinks if level else ()) if kink not in moving]
     known = apart([*inner, *lasting], _INNER * size, fine.tolist())
-    points = np.array(apart([*passing, *moving], _PASSING * size, known))
+    passing = apart(moving, _PASSING * size, [*known, *bends])[len(known) + len(bends) :]
+    points = np.array([*known, *bends, *passing])
     sizes = np.full(len(points), _PASSING * size)
     sizes[: len(known)] = _INNER * size
-    sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST)
+    sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap[: len(fine)], 1.0), _SMALLEST)
+    at_bends = slice(len(known), len(known) + len(bends))
+    sizes[at_bends] = np.minimum(sizes[at_bends], growth * gap[len(fine) :])
     order = np.argsort(points)
     return graded_cells(points[order], sizes[order], growth)
 
@@ -240,7 +256,7 @@ def _solve_level(
         normally = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
         tangential = normally + added(frame.places(vertices)) if added else normally
     with clock.phase("contact"):
-        f = scene.friction.at(frame.places(x))
+        f = friction_on(scene.friction, frame.places(vertices))
         moved = stretched(x * frame.a / scene.length, frame.centre / scene.length)
 
         def zone(of: History) -> StickInterval:

@@ -21,11 +21,12 @@ from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.normal import press
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import steady_state, steps_of_coupled
-from partialslip.friction.step_errors import Errors, along_path, other_steps, pressed_together, summed
+from partialslip.friction.step_errors import Errors, along_path, more_steps, other_steps, pressed_together, summed
+from partialslip.friction.work import told_by_finer
 from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, read_stick_zone, within
 from partialslip.halfplane.tractions import CoupledTractions
 from partialslip.march import driver
-from partialslip.march.cells import graded_cells, norm_parts, on_cells, relative_change
+from partialslip.march.cells import friction_on, graded_cells, nearest, norm_parts, on_cells, relative_change
 from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
@@ -88,11 +89,10 @@ class UnlikeLevel(driver.Level):
 class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
     """Half-planes of unlike materials, for :func:`partialslip.march.driver.march`: ``beta``, zero without coupling, and
     the flat ``punch`` as which the contact grows under an even ``gap``, if it is one. ``followed`` are the errors of
-    the load steps, on the first cells that are not coarse. Twice as many steps would cost twice as much on these and
-    all finer cells: they stay as asked for."""
+    the load steps, on the first cells that are not coarse. There as many steps are taken as these errors call for."""
 
     telling = ("a",)
-    steps_count = False  # they are as asked for
+    steps_count = False  # they are as many as their errors call for
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock) -> None:
         super().__init__(scene, start, clock, load_path(scene, plan, start), (scene.origin, scene.length), _MESHES)
@@ -107,6 +107,26 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
         self.followed: Errors = {}
 
     def solve(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
+        found = self._enclosed(level, mesh)
+        if level and not self.followed and self.path and self.path.moves and self.beta:
+            return self._in_enough_steps(found)
+        return found
+
+    def _in_enough_steps(self, level: UnlikeLevel) -> UnlikeLevel:
+        """The ``level`` in as many load steps as their errors call for, which all finer cells take, too."""
+        while level.history and level.stick:
+            level, self.followed = _path_errors(self, level)
+            assert level.history
+            self.path = path = replace(level.history.path, before=None)
+            more = more_steps(path, self.followed, _step_errors(level), self.scene.fem.accuracy)
+            if not more or self.clock.remaining() <= 0:
+                break
+            self.path = more
+            level = _solve_on(self, more, level.vertices, max(level.a), self.clock)
+        return level
+
+    def _enclosed(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
+        """The solution on cells that enclose the contact."""
         wider = 1.0
         while True:
             near = max(level.a) if level else None
@@ -117,8 +137,6 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
             wider *= _WIDER
 
     def mesh_errors(self, level: UnlikeLevel, before: UnlikeLevel) -> Errors:
-        if not self.followed and self.path and self.path.moves and self.beta:
-            self.followed = _path_errors(self, self.path, level, self.clock)
         return _mesh_errors(level, before, self)
 
     def step_errors(self, level: UnlikeLevel) -> Errors:
@@ -182,14 +200,16 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
             fine, inner = apart(level.fine, _SMALLEST * a), [*level.kinks]
         inner += [(kink - self.scene.origin) / self.scene.length for kink in self.scene.profile.kinks]
         inner += [0.0] if self.punch and self.gap and self.gap.parabolic else []  # there q/p is x ln|x|
-        ends = np.sort(fine)
-        gaps = np.diff(ends)
-        gap = np.minimum(np.append(gaps, np.inf), np.append(np.inf, gaps)) / a
-        sizes = np.maximum(size * np.minimum(_NEAR * gap, 1.0), _SMALLEST) * a
+        L, friction = self.scene.length, self.scene.friction
+        bends = [(kink - self.scene.origin) / L for kink in friction.sharp_kinks(a * L)]
+        bends = apart([bend for bend in bends if abs(bend) < far], _SMALLEST * a, fine)[len(fine) :]
+        gap = nearest(np.array([*fine, *bends])) / a
+        sizes = np.maximum(size * np.minimum(_NEAR * gap[: len(fine)], 1.0), _SMALLEST) * a
+        at_bends = np.minimum(_INNER * size, growth * gap[len(fine) :]) * a
         others = [kink for kink in apart(inner, _INNER * size * a, fine)[len(fine) :] if abs(kink) < far]
-        points = np.concatenate([ends, others, [-far, far]])
+        points = np.concatenate([fine, bends, others, [-far, far]])
         wide = growth * (far - self.width)
-        every = np.concatenate([sizes, np.full(len(others), _INNER * size * a), [wide, wide]])
+        every = np.concatenate([sizes, at_bends, np.full(len(others), _INNER * size * a), [wide, wide]])
         order = np.argsort(points)
         return graded_cells(points[order], every[order], growth)
 
@@ -229,7 +249,7 @@ def _solve_on(
         line = coulomb_coupled.Nodes(x, widths, ends, None, stages is not None, near=near, stages=stages, under=under)
         moved = stretched(x, scene.origin / L)
         stretch, allowed = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
-        f = scene.friction.at(x * L + scene.origin)
+        f = friction_on(scene.friction, vertices * L + scene.origin)
         history, pressing, first = coulomb_coupled.march(C, gap, stretch, moved[1], f, path, begins, line, allowed)
         at_points = tuple(ends(p, q) for p, q in zip(history.pressures, (history.q1, history.q2), strict=True))
         level = UnlikeLevel(vertices, history, None, pressing, first, at_points)  # type: ignore[arg-type]
@@ -307,17 +327,18 @@ def _step_errors(level: UnlikeLevel) -> Errors:
     return pressed_together(level.history, level.pressed, np.diff(level.vertices), np.arange(len(level.x)))
 
 
-def _path_errors(problem: UnlikeBodies, path: Path, level: UnlikeLevel, clock: Clock) -> Errors:
-    """Errors of the load steps, on the cells of the ``level``."""
-    if not level.history or not level.stick:
-        return {}
-    finer = _solve_on(problem, other_steps(path), level.vertices, max(level.a), clock)
-    if not finer.history or not finer.stick:
-        return {}
+def _path_errors(problem: UnlikeBodies, level: UnlikeLevel) -> tuple[UnlikeLevel, Errors]:
+    """The ``level`` with the work that its load steps miss, and their errors on its cells; empty if not known."""
+    assert level.history
+    path = replace(level.history.path, before=None)
+    finer = _solve_on(problem, other_steps(path), level.vertices, max(level.a), problem.clock)
+    if not finer.history or not finer.stick or not level.stick:
+        return level, {}
     places = {id(level.history): level.ends, id(finer.history): finer.ends}
 
     def ends(history: History) -> tuple[float, ...]:
         return (*places[id(history)][0], *places[id(history)][1])
 
     zones, widths = (level.stick, finer.stick), np.diff(level.vertices)
-    return along_path(level.history, finer.history, zones, ends, widths, level.a[problem.scene.largest - 1])
+    off = along_path(level.history, finer.history, zones, ends, widths, level.a[problem.scene.largest - 1])
+    return replace(level, history=told_by_finer(level.history, finer.history)), off

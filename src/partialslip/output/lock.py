@@ -18,6 +18,7 @@ except ImportError:  # Windows
 
 LOCK_NAME = ".partialslip.lock"
 TRIES = 20  # cost: to open and lock a file
+_HOLDER = "process "  # begin of the text in the file
 _BEYOND = 1 << 30  # limit: byte locked on Windows: beyond the text, because locked bytes cannot be read
 
 
@@ -127,13 +128,27 @@ def _taken(path: Path) -> tuple[int, str]:
         if lock(handle) is False:
             holder = os.read(handle, 200).decode(errors="replace")
             os.close(handle)
-            return -1, holder or "another process"
+            return -1, holder if holder.startswith(_HOLDER) else "another process"
         if is_at(handle, path):  # the previous holder has not just removed the file
-            os.truncate(handle, 0)
-            os.write(handle, f"process {os.getpid()} on {platform.node()}".encode(errors="replace"))
+            _sign(handle, path)
             return handle, ""
         os.close(handle)
     raise failed
+
+
+def _sign(handle: int, path: Path) -> None:
+    """Write into the locked file at ``path`` who holds it. A disk that is full leaves no file, which would keep the
+    folder from being removed."""
+    holder = f"{_HOLDER}{os.getpid()} on {platform.node()}".encode(errors="replace")
+    try:
+        os.truncate(handle, 0)
+        if os.write(handle, holder) < len(holder):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    except OSError:
+        with contextlib.suppress(OSError):
+            path.unlink(missing_ok=True)
+        os.close(handle)
+        raise
 
 
 def _remove(folders: list[Path]) -> None:

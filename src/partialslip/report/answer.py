@@ -2,29 +2,27 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.judge.known import error_of
 from partialslip.judge.reference import reference
-from partialslip.result import Result
-from partialslip.result.peak import peak_error
+from partialslip.result import RATCHETS, Result, Slip
+from partialslip.result.peak import peak_error, pressure_peaks
 from partialslip.run import Run
-from partialslip.units import PREFIXES, SI, Dimension, Units
+from partialslip.scene import Tabulated
+from partialslip.units import LENGTHS, PREFIXES, SI, Dimension, Units
 
 _DIGITS = 7  # display: significant
 
 _Value = Callable[[Result], float | None]
-_LENGTHS: Mapping[str, _Value] = {
-    "a, half-width": lambda found: found.a,
-    "m, stick from -m": lambda found: found.m,
-    "n, stick to n": lambda found: found.n,
-}
+_LENGTHS = {"a": "a, half-width", "m": "m, stick from -m", "n": "n, stick to n"}
 _OTHERS: Mapping[str, tuple[Dimension, _Value]] = {
-    "p, largest": ("Pa", lambda found: found.traction.p_max),
+    "p_max, largest p": ("Pa", lambda found: found.traction.p_max),
     "q = (q2 - q1)/2, largest": ("Pa", lambda found: float(np.abs(found.traction.dq).max()) / 2),
     "slip, largest each way": ("m", lambda found: float(np.abs(found.slip.slip).max()) if found.slip else None),
-    "dissipated in a cycle": ("J/m", lambda found: found.slip.dissipated if found.slip else None),
 }
 
 
@@ -37,12 +35,18 @@ def amounts(results: Mapping[str, Result], units: Units = SI) -> tuple[list[str]
     found = list(results.values())
     largest = max(result.a for result in found)
     lengths = (-3, "mm") if 1e-6 <= largest < 1 else scale(largest, "m", units)
-    rows = [_row(quantity, lengths, [value(result) for result in found]) for quantity, value in _LENGTHS.items()]
+    rows = [
+        [text, lengths[1], *(_length(result, key, lengths[0]) for result in found)] for key, text in _LENGTHS.items()
+    ]
     for quantity, (of, value) in _OTHERS.items():
         values = [value(result) for result in found]
         largest = max((abs(each) for each in values if each is not None and math.isfinite(each)), default=0.0)
         if largest:
             rows.append(_row(quantity, scale(largest, of, units), values))
+    if worn := [result.slip.dissipated for result in found if result.slip and result.slip.dissipated]:
+        exponent, label = scale(max(worn), "J/m", units)
+        works = [dissipated(result.slip, exponent) if result.slip else "none" for result in found]
+        rows.append(["dissipated in a cycle", label, *works])
     return ["quantity", "unit", *results], rows
 
 
@@ -63,10 +67,18 @@ def _digits(value: float | None, exponent: int) -> str:
     return "none" if value is None else f"{value / 10.0**exponent:.{_DIGITS}g}"
 
 
+def _length(result: Result, key: str, exponent: int) -> str:
+    """Return a, m or n (``key``) of ``result``, few digits without an estimate of its error."""
+    value = getattr(result, key) if result.steady or key == "a" else None
+    if value is None or math.isfinite(error := _error_of(result, key)):
+        return _digits(value, exponent)
+    return with_error(value, error, exponent) + NOT_ESTIMATED
+
+
 _ROUNDING = 1e-9  # display: of a
+NOT_ESTIMATED = ", no error estimate"  # display: beside values whose error is not estimated
 _ROUGH = 4  # display: significant, of values whose error is not estimated
 HALF_PLANES = ("exact", "march")  # methods that know no finite bodies
-_EXACT = ("exact", "march")  # what these do not estimate (march: the pressure) they know to rounding
 
 
 class Known(NamedTuple):
@@ -85,31 +97,35 @@ def answer_heading(run: Run) -> str:
 def answers(run: Run) -> list[tuple[str, str]]:
     """Return pairs of quantity and value of ``run``.
 
-    Quantities are the stick zone, a, p0, at both load points the largest shear and the largest sigma_xx along the
-    surface of the lower body, the forces, displacements and stiffnesses of the plates of two finite bodies, and what a
-    grip on the right side bears.
+    Quantities are the stick zone, a, p0 = 2 P/(pi a), the largest pressure p_max, at both load points the largest shear
+    and the largest sigma_xx along the surface of the lower body, the forces, displacements and stiffnesses of the
+    plates of two finite bodies, and what a grip on the right side bears. A contact that ratchets has no stick zone.
 
-    A value has the digits that the method's own estimate of its error leaves, and the error: ``0.888 +- 0.003``. Values
+    A value has the digits that the method's own estimate of its error leaves, and the error: ``0.888 +- 0.003``. One
+    without an estimate has few digits, and is marked: ``0.8881, no error estimate``. Values
     that the answering method does not know come from the first that knows them, which is named. What the noise and
     the spacing of a given profile make has lines of its own.
     """
     result = run.results[run.answering]
-    own = [*_stick(run, result), *_noise(run), *_spacing(run), *_contact(run, result)]
+    own = [*_stick(run, result), *_points(run), *_noise(run), *_spacing(run), *_contact(run, result)]
     return [*own, *_shears(run), *_stresses(run), *_plates(run), *_right_grip(run)]
 
 
 def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
+    if not result.steady:
+        yield "stick zone", f"none: {RATCHETS}"
+        return
     if result.m is None or result.n is None:
         yield "stick zone", "none" + (f": {result.undetermined['m']}" if "m" in result.undetermined else "")
         return
-    errors = [estimate_of(result, key) * result.a for key in "mn"]
+    errors = [_error_of(result, key) * result.a for key in "mn"]
     exponent, label = _unit(run, result.a, "m")
     ends = [with_error(end, error, exponent) for end, error in zip((-result.m, result.n), errors, strict=True)]
-    yield "stick zone", f"[{ends[0]}, {ends[1]}] {label}"
+    yield "stick zone", f"[{ends[0]}, {ends[1]}] {label}{_mark(*errors)}"
     shares = [
         with_error(end / result.a, error / result.a) for end, error in zip((result.m, result.n), errors, strict=True)
     ]
-    yield "m, n", f"{shares[0]} a, {shares[1]} a"
+    yield "m, n", f"{shares[0]} a, {shares[1]} a{_mark(*errors)}"
     if result.permanent is None:
         return
     apart = max(abs(result.permanent[0] + result.m), abs(result.permanent[1] - result.n))
@@ -120,6 +136,15 @@ def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
     else:
         ends = [with_error(end, error, exponent) for end, error in zip(result.permanent, errors, strict=True)]
         yield "never slips", f"[{ends[0]}, {ends[1]}] {label}"
+
+
+def _points(run: Run) -> Iterator[tuple[str, str]]:
+    """Yield the number of points of a measured profile, and the units in which they were read."""
+    if not isinstance(run.scene.profile, Tabulated) or (known := run.scene.profile.measured) is None:
+        return
+    names = {factor: name for name, factor in reversed(LENGTHS.items())}
+    x, gap = (names.get(float(f"{unit:.12g}"), f"{unit:g} m") for unit in known.unit)
+    yield "points of the profile", f"{known.points} of {Path(known.file).name}, x in {x}, gap in {gap}"
 
 
 def _noise(run: Run) -> Iterator[tuple[str, str]]:
@@ -145,15 +170,19 @@ def _scatter(deviations: Mapping[str, float | None]) -> str:
 
 
 def _contact(run: Run, result: Result) -> Iterator[tuple[str, str]]:
-    error = estimate_of(result, "a")
+    error = _error_of(result, "a")
     exponent, label = _unit(run, result.a, "m")
-    yield "a", f"{with_error(result.a, error * result.a, exponent)} {label}"
+    yield "a", f"{with_error(result.a, error * result.a, exponent)} {label}{_mark(error)}"
     if not run.scene.even or run.scene.presses_anew:
         for point, ends in enumerate(result.ends, start=1):
             left, right = (with_error(end, error * result.a, exponent) for end in ends)
-            yield f"contact, load point {point}", f"[{left}, {right}] {label}"
+            yield f"contact, load point {point}", f"[{left}, {right}] {label}{_mark(error)}"
     exponent, label = _unit(run, result.p0, "Pa")
-    yield "p0", f"{with_error(result.p0, error * result.p0, exponent)} {label}"
+    yield "p0", f"{with_error(result.p0, error * result.p0, exponent)} {label}{_mark(error)}"
+    peaks = pressure_peaks(result, _error_of(result, "p"))
+    for point, (peak, error) in enumerate(peaks, start=1):
+        where = f", load point {point}" if len(peaks) > 1 else ""
+        yield f"p_max{where}", f"{with_error(peak, error, exponent)} {label}{_mark(error)}"
 
 
 def _shears(run: Run) -> Iterator[tuple[str, str]]:
@@ -185,12 +214,13 @@ def _stresses(run: Run) -> Iterator[tuple[str, str]]:
         index, last = int(sigma.argmax()), len(sigma) - 1
         place = float(surface.x[index])
         beside = np.abs(surface.x[[max(index - 1, 0), min(index + 1, last)]] - place).max()
-        error = estimate_of(known.result, "a") * known.result.a if _at_an_end(place, known.result) else float(beside)
+        error = _error_of(known.result, "a") * known.result.a if _at_an_end(place, known.result) else float(beside)
         far = index in (0, last)
         where = "away from the contact" if far else f"at x = {with_error(place, error, exponent)} {label}"
         power, unit = _unit(run, float(sigma.max()), "Pa")
-        value = with_error(float(sigma.max()), math.nan if off is None else off, power)
-        yield f"largest sigma_xx, {point + 1}", f"{value} {unit} {where}{_by(known)}"
+        off = math.nan if off is None else off
+        value = with_error(float(sigma.max()), off, power)
+        yield f"largest sigma_xx, {point + 1}", f"{value} {unit} {where}{_mark(off)}{_by(known)}"
 
 
 def _plates(run: Run) -> Iterator[tuple[str, str]]:
@@ -203,18 +233,18 @@ def _plates(run: Run) -> Iterator[tuple[str, str]]:
     if load.displacement is not None:
         exponent, label = _unit(run, float(np.abs(plates.at_points).max()), "N/m")
         forces = [with_error(Q, off * plates.stiffness[0], exponent) for Q in plates.at_points]
-        yield "Q", f"{', '.join(forces)} {label}{by}"
+        yield "Q", f"{', '.join(forces)} {label}{_mark(off)}{by}"
     exponent, label = _unit(run, float(np.abs(plates.displacement).max()), "m")
     if np.isfinite(plates.displacement).all():
-        given = load.displacement is not None and load.spring is None
-        moved = [with_error(each, 0.0 if given else off, exponent) for each in plates.displacement]
-        yield "plates along x", f"{', '.join(moved)} {label} at load points 1, 2{by}"
+        off = 0.0 if load.displacement is not None and load.spring is None else off
+        moved = [with_error(each, off, exponent) for each in plates.displacement]
+        yield "plates along x", f"{', '.join(moved)} {label} at load points 1, 2{_mark(off)}{by}"
     if plates.turn is not None:
         turned = [with_error(each, math.nan) for each in plates.turn]
-        yield "plate turns by", f"{', '.join(turned)} rad at load points 1, 2{by}"
+        yield "plate turns by", f"{', '.join(turned)} rad at load points 1, 2{NOT_ESTIMATED}{by}"
     exponent, label = _unit(run, max(plates.stiffness), "Pa")
     along = [with_error(each, error * each, exponent) for each in plates.stiffness]
-    yield "stiffness, x and y", f"{', '.join(along)} {label} per unit depth, while all sticks{by}"
+    yield "stiffness, x and y", f"{', '.join(along)} {label} per unit depth, while all sticks{_mark(error)}{by}"
 
 
 def _right_grip(run: Run) -> Iterator[tuple[str, str]]:
@@ -226,7 +256,7 @@ def _right_grip(run: Run) -> Iterator[tuple[str, str]]:
     borne = ", ".join(with_error(force, math.nan, exponent) for force in forces)
     load = known.result.plates.told(run.scene).load if known.result.plates else run.scene.load
     share = f", {np.diff(forces)[0] / load.dQ:.1%} of the change of Q" if load.dQ and not run.scene.presses_anew else ""
-    yield "right grip", f"{borne} {label} besides sigma at load points 1, 2{share}{_by(known)}"
+    yield "right grip", f"{borne} {label} besides sigma at load points 1, 2{share}{NOT_ESTIMATED}{_by(known)}"
 
 
 def first_knowing(run: Run, knows: Callable[[Result], bool]) -> Known | None:
@@ -264,15 +294,26 @@ def _stress(run: Run, value: float, known: Known, key: str) -> str:
     as the square root of h there, and adds h to the norm: the largest value is known to the root of the norm's error.
     """
     exponent, label = _unit(run, value, "Pa")
-    return f"{with_error(value, math.sqrt(estimate_of(known.result, key)) * abs(value), exponent)} {label}"
+    error = math.sqrt(_error_of(known.result, key)) * abs(value)
+    return f"{with_error(value, error, exponent)} {label}{_mark(error)}"
 
 
-def estimate_of(result: Result, key: str) -> float:
-    """Return the method's own estimate of an error, NaN if there is none; that of q for q1 and q2 that have none, and
-    that of a for m and n where all of the contact sticks."""
-    instead = {"q1": "q", "q2": "q"} | ({"m": "a", "n": "a"} if result.regime == "stuck" else {})
-    unknown = 0.0 if result.method in _EXACT else math.nan
-    return float(result.estimate.get(key, result.estimate.get(instead.get(key, key), unknown)))
+def _error_of(result: Result, key: str) -> float:
+    return error_of(result, key, result.method)
+
+
+def _mark(*errors: float) -> str:
+    """Return that there is no estimate, if one of the ``errors`` is NaN."""
+    return "" if all(map(math.isfinite, errors)) else NOT_ESTIMATED
+
+
+def dissipated(slip: Slip, exponent: int = 0, label: str = "") -> str:
+    """Return the work of friction in a cycle in units of ten to the ``exponent``, with its error and the unit's
+    ``label``, as text."""
+    error = math.nan if slip.dissipated_error is None else slip.dissipated_error
+    if error > slip.dissipated:
+        return f"at most {(slip.dissipated + error) / 10.0**exponent:.1g} {label}".rstrip()
+    return f"{with_error(slip.dissipated, error, exponent)} {label}".rstrip() + _mark(error)
 
 
 def _unit(run: Run, size: float, of: Dimension) -> tuple[int, str]:

@@ -14,7 +14,7 @@ from partialslip.report.rows import shown_half_planes
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Friction, Scene, Tabulated
-from partialslip.scene.measured import read_points
+from partialslip.scene.points import read_points
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -109,7 +109,7 @@ def draw_tractions(
     a, p0 = reference.a, reference.p0
     unit, usual = (p0, "q/p0") if friction is None else (friction.f * p0, "q/(f p0)")
     shear = shear or usual
-    if reference.m is not None and reference.n is not None:
+    if reference.m is not None and reference.n is not None and reference.steady:
         whose = f", {_plain(leading)}" if len(results) > 1 else ""
         axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label=f"stick zone [-m, n]{whose}")
     shears = bool(reference.traction.dq.any())

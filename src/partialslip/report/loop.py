@@ -6,7 +6,7 @@ import numpy as np
 
 from partialslip.output.files import csv_text
 from partialslip.output.svg import svg
-from partialslip.report.answer import scale
+from partialslip.report.answer import dissipated, scale
 from partialslip.result import Result
 from partialslip.result.plates import Plates
 from partialslip.run import Run
@@ -91,7 +91,8 @@ def loop_rows(run: Run) -> list[tuple[str, str]]:
     if _open(plates):
         rows.append(("work of Q in a cycle", units.text(plates.work, "J/m", 4)))
     if result.slip:
-        rows.append(("dissipated in a cycle", units.text(result.slip.dissipated, "J/m", 4)))
+        exponent, label = scale(result.slip.dissipated, "J/m", units)
+        rows.append(("dissipated in a cycle", dissipated(result.slip, exponent, label)))
     return rows
 
 

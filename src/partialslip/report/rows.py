@@ -8,8 +8,9 @@ import numpy as np
 
 from partialslip.groups import grouped
 from partialslip.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
+from partialslip.judge.known import error_of
 from partialslip.plan import Plan
-from partialslip.report.answer import HALF_PLANES
+from partialslip.report.answer import HALF_PLANES, NOT_ESTIMATED, dissipated, scale, with_error
 from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.scene import Scene
@@ -28,7 +29,7 @@ _MEANING = {
     "P": "P, sum of p",
     "M": "M, moment of p",
     "p": "p, pressure",
-    "p_max": "p, largest",
+    "p_max": "p_max, largest p",
     "dQ": "dQ, sum of dq",
     "q": "q, shear",
     "q_max": "q, largest",
@@ -126,7 +127,7 @@ def units(run: Run) -> str:
     """Return the units of the error tables in one line: f p0 and P, and a and p0 if the answer shows others."""
     reference, scene, text = run.results[run.reference or ""], run.scene, run.scene.units.text
     own = run.results[run.answering]
-    above = f" (m, n above: in a of {own.method})" if own.m is not None else ""
+    above = f" (m, n above: in a of {own.method})" if own.m is not None and own.steady else ""
     parts = {
         "a": scene.units.length(reference.a) + above if run.reference != run.answering else "",
         "p0": text(reference.p0, "Pa", 6) if run.reference != run.answering else "",
@@ -137,12 +138,14 @@ def units(run: Run) -> str:
 
 
 def unjudged(comparison: Comparison) -> list[str]:
-    """Return quantities that exist and usually have a bar, but are not judged, one line per reason."""
+    """Return quantities that usually have a bar, but are not judged, one line per reason: those that exist, and those
+    that the outcome calls for."""
     reasons = grouped(
         (verdict.reason, verdict.quantity)
         for verdict in comparison.verdicts
-        if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR and verdict.known
-        if verdict.quantity in BARS or verdict.quantity == "regime"
+        if verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR
+        if verdict.quantity in comparison.unjudged
+        or (verdict.known and (verdict.quantity in BARS or verdict.quantity == "regime"))
     )
     return [f"not judged: {', '.join(quantities)}: {reason}" for reason, quantities in reasons.items()]
 
@@ -263,11 +266,14 @@ def run_notes(run: Run) -> list[str]:
 
 
 def value(result: Result, key: str, units: Units = SI) -> str:
-    """Return a, m or n (``key``) of ``result`` with the unit; a in ``units``."""
+    """Return a, m or n (``key``) of ``result`` with the unit; a in ``units``, few digits of a stick zone whose error is
+    not estimated, "none" where there is no steady state."""
     if key == "a":
         return units.length(result.a)
-    end = getattr(result, key)
-    return "none" if end is None else f"{end / result.a:.7f} a"
+    end = getattr(result, key) if result.steady else None
+    if end is None or math.isfinite(error_of(result, key, result.method)):
+        return "none" if end is None else f"{end / result.a:.7f} a"
+    return with_error(end / result.a, math.nan) + f" a{NOT_ESTIMATED}"
 
 
 def found(result: Result, units: Units = SI) -> str:
@@ -309,7 +315,9 @@ def slip_text(result: Result, units: Units = SI) -> str:
     if result.slip is None:
         return ""
     largest = units.text(float(np.abs(result.slip.slip).max()), "m", 5)
-    return f"up to {largest} each way, {units.text(result.slip.dissipated, 'J/m', 5)} dissipated a cycle"
+    exponent, label = scale(result.slip.dissipated, "J/m", units)
+    words = f"{label} dissipated a cycle"
+    return f"up to {largest} each way, {dissipated(result.slip, exponent, words)}"
 
 
 def setting(choice: object) -> str:

@@ -2,6 +2,7 @@
 
 from partialslip.result.cost import Clock as Clock
 from partialslip.result.cost import Cost as Cost
+from partialslip.result.cost import Pace as Pace
 from partialslip.result.fields import DeformedBody as DeformedBody
 from partialslip.result.fields import Slip as Slip
 from partialslip.result.fields import StressAt as StressAt
@@ -9,6 +10,7 @@ from partialslip.result.fields import SurfaceStress as SurfaceStress
 from partialslip.result.plates import Plates as Plates
 from partialslip.result.result import FRICTIONLESS as FRICTIONLESS
 from partialslip.result.result import PATH_DEPENDENT as PATH_DEPENDENT
+from partialslip.result.result import RATCHETS as RATCHETS
 from partialslip.result.result import EndSlip as EndSlip
 from partialslip.result.result import Regime as Regime
 from partialslip.result.result import Result as Result

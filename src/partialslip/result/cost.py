@@ -81,16 +81,6 @@ class Clock:
         """Whether there is an allowance."""
         return self._allowance is not None
 
-    @property
-    def finest(self) -> float:
-        """Accuracy up to which seconds that are left may be spent; infinite: that of the scene suffices."""
-        return self._allowance.finest if self._allowance else math.inf
-
-    @property
-    def overdraft(self) -> float:
-        """CPU seconds beyond those left that the accuracy of the scene may be planned with."""
-        return self._allowance.overdraft if self._allowance else math.inf
-
     def remaining(self) -> float:
         """Return the CPU seconds left; infinite without an allowance."""
         return self._allowance.remaining() if self._allowance else math.inf
@@ -108,3 +98,29 @@ class Clock:
             start_rss_mb=memory.start_mb,
             peak_rss_unknown=memory.unknown,
         )
+
+
+class Pace:
+    """CPU seconds of meshes one after the other, and whether the next one fits the allowance of a ``clock``.
+
+    The next mesh is taken to grow as the last two did.
+    """
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock, self._left = clock, clock.remaining()
+        self._took: list[float] = []
+
+    def took(self) -> None:
+        """Attribute the seconds since the last call to one mesh."""
+        if self._clock.limited:
+            left = self._clock.remaining()
+            self._took.append(self._left - left)
+            self._left = left
+
+    def fits(self, times: float = 1.0) -> bool:
+        """Return whether ``times`` the seconds of the next mesh are left; true without an allowance."""
+        if not self._clock.limited:
+            return True
+        before, last = [self._took[-1], *self._took][-2:]
+        growth = max(last / before, 1.0) if before > 0 else 1.0
+        return times * growth * last <= self._left

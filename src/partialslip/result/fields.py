@@ -73,11 +73,14 @@ class Slip(Short):
         body, m.
     dissipated : float
         Work against friction over one cycle, per unit depth, J/m.
+    dissipated_error : float or None
+        Its estimated error, J/m; None if it is not known.
     """
 
     x: Array
     slip: Array
     dissipated: float
+    dissipated_error: float | None = None
 
 
 @dataclass(frozen=True, repr=False)

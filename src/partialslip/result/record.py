@@ -18,11 +18,13 @@ R = TypeVar("R", bound=msgspec.Struct)
 
 
 class SlipRecord(Short, msgspec.Struct, frozen=True):
-    """Record of a :class:`partialslip.Slip`: points ``x`` (m), ``slip`` (m), work ``dissipated`` in a cycle (J/m)."""
+    """Record of a :class:`partialslip.Slip`: points ``x`` (m), ``slip`` (m), work ``dissipated`` in a cycle (J/m) and
+    its estimated error ``dissipated_error`` (J/m), None if it is not known."""
 
     x: Numbers
     slip: Numbers
     dissipated: JsonNumber
+    dissipated_error: JsonNumber = None
 
 
 class SurfaceRecord(Short, msgspec.Struct, frozen=True):

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from partialslip.frame import DataFrame
 
 PATH_DEPENDENT = "path-dependent: slip reverses "
+RATCHETS = "the contact ratchets: there is no steady state"
 FRICTIONLESS = "f = 0 and Q = 0: nothing sticks, and without shear force the contact stays where it is"
 
 Regime = Literal[
@@ -37,7 +38,8 @@ EndSlip = Literal["forwards", "backwards", "never", "part of the cycle"]
 class SteadyState(NamedTuple):
     """What a method finds of the steady state: ``regime``, ``centre`` and ``half_width`` of the stick zone (None if
     nothing sticks), ``notes``, how the ends of the contact slip, where the pressure varies, and the ends of the zone
-    that never slips, (nan, nan) if there is none, None if it is not known. Lengths are in any one unit."""
+    that never slips, (nan, nan) if there is none, None if it is not known. Lengths are in any one unit.
+    ``undetermined`` as in :class:`Result`."""
 
     regime: Regime
     centre: float | None = None
@@ -45,6 +47,7 @@ class SteadyState(NamedTuple):
     notes: tuple[str, ...] = ()
     slips: tuple[EndSlip, EndSlip] | None = None
     permanent: tuple[float, float] | None = None
+    undetermined: Mapping[str, str] = {}
 
     def placed(self, origin: float, length: float) -> "SteadyState":
         """The same in m: ``length`` (m) is the unit, and the zero is at ``origin`` (m)."""
@@ -108,7 +111,8 @@ class Result(Drawn):
         Parts of the estimates by source (``discretisation``, ``steps``, ``start``, ``table``, ``rounding``) and key of
         ``estimate``.
     undetermined : mapping of str to str
-        By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference.
+        By quantity (``m``, ``n``, ``q``, ``q1``, ``q2``), why the value cannot serve as a reference; ``regime``: why
+        its name is not certain; ``steady``: why the cycles do not tell the steady state.
     path_dependent : bool
         Whether slip reverses between the load points and the result is that of one load step, which gradual loads do
         not have.
@@ -190,14 +194,21 @@ class Result(Drawn):
             notes=found.notes,
             end_slips=found.slips,
             permanent=found.permanent,
+            undetermined=found.undetermined,
         )
 
     def __repr__(self) -> str:
         """Method, regime, a, m, n and p0, in a line."""
         ends = {"m": self.m, "n": self.n}
         found = ", ".join(f"{key} = {end / self.a:.7g} a" for key, end in ends.items() if end is not None)
-        stick = found or "no stick zone"
+        stick = (found if self.steady else "no steady state") or "no stick zone"
         return f"Result of {self.method}: {self.regime}; a = {self.a:.7g} m, {stick}; p0 = {self.p0:.7g} Pa"
+
+    @property
+    def steady(self) -> bool:
+        """Whether the cycle has a steady state. Where the contact ratchets, [-m, n] is the zone in which \\|dq\\| is
+        below the bound: of the closed form (exact), which no cycle reaches, or of the last cycle (march, fem)."""
+        return self.regime != "ratchets"
 
     @property
     def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:

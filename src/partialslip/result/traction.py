@@ -48,6 +48,22 @@ class TractionAt(NamedTuple):
         return None if self.q1 is None or self.q2 is None else (self.q1, self.q2)
 
 
+def largest(x: Array, p: Array) -> float:
+    """Return the largest of the values ``p`` (n,) at ascending points ``x`` (n,), interpolated by a parabola through
+    the largest one and the two beside it."""
+    if len(x) < 3:
+        return float(p.max())
+    near = np.clip(int(p.argmax()), 1, len(x) - 2) + np.array([-1, 0, 1])
+    x, p = x[near], p[near]
+    if np.diff(x).min() <= 0:
+        return float(p.max())
+    before, after = np.diff(p) / np.diff(x)
+    bend = (after - before) / (x[2] - x[0])
+    slope = before + bend * (x[1] - x[0])
+    rise = -(slope**2) / (4 * bend) if bend < 0 and abs(slope) < -bend * (x[2] - x[0]) else 0.0
+    return float(max(p.max(), p[1] + rise))
+
+
 class Observed(NamedTuple):
     """What the values of a table stand for, so that a reference is compared like with like.
 
@@ -123,18 +139,9 @@ class Traction(Short):
 
     @property
     def p_max(self) -> float:
-        """The largest pressure, Pa, interpolated by a parabola through the largest value and the two beside it."""
-        if len(self.x) < 3:
-            return float(self.p.max())
-        near = np.clip(int(self.p.argmax()), 1, len(self.x) - 2) + np.array([-1, 0, 1])
-        x, p = self.x[near], self.p[near]
-        if np.diff(x).min() <= 0:
-            return float(p.max())
-        before, after = np.diff(p) / np.diff(x)
-        bend = (after - before) / (x[2] - x[0])
-        slope = before + bend * (x[1] - x[0])
-        rise = -(slope**2) / (4 * bend) if bend < 0 and abs(slope) < -bend * (x[2] - x[0]) else 0.0
-        return float(max(p.max(), p[1] + rise))
+        """The largest pressure at load point 2, Pa, interpolated by a parabola through the largest value and the two
+        beside it."""
+        return largest(self.x, self.p)
 
 
 @dataclass(frozen=True)

@@ -4,28 +4,21 @@ The gap is the integral of a slope that is linear between points one smoothing l
 The slope must not decrease. Of all such gaps the nearest one to the points is taken, by least squares.
 """
 
-import re
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, NoReturn
 
 import msgspec
 import numpy as np
 
 from partialslip.arrays import Array
 from partialslip.errors import InputError
-from partialslip.inputfile import read_text
-from partialslip.scene.table import LARGEST, SMALLEST, Positive, Table
-from partialslip.units import LENGTHS
+from partialslip.scene.points import column_units, read_points
+from partialslip.scene.table import Positive, Table
 
 if TYPE_CHECKING:
     from partialslip.scene import Scene
     from partialslip.scene.reading import AnyScene
 
-_LARGEST = 20_000_000  # limit: bytes of a file of points
-_FEWEST = 10  # limit: points
 _COARSEST, _MOST = 3, 1000  # accuracy: intervals and points of a table
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
-_BRACKETS = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
-_COLUMNS = 2  # fixed: x and gap
 _SURE = 5.0  # accuracy: standard deviations of a mean over a smoothing length that are not taken for noise
 _ROUNDING = 1e-12  # accuracy: misfit, relative to the largest gap, that is not taken for noise
 # msgspec 0.20 fails on a union of a number and a tuple of fixed length
@@ -35,9 +28,10 @@ ColumnUnit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=
 class ProfileFile(Table, frozen=True, kw_only=True):
     """Keys of a profile from a file.
 
-    ``file`` has the columns x and gap; ``unit`` (m) is that of its numbers, or of each column (default: the units in
-    the heading of the file, such as ``x [mm], gap [um]``, else the scene's unit of length); ``smooth`` (m) is the
-    smoothing length, and ``noise`` (m) the standard deviation of the gaps (default: estimated).
+    ``file`` has the columns x and gap, of one half of an even gap if x begins at 0; ``unit`` (m) is that of its
+    numbers, or of each column (default: the units in the heading of the file, such as ``x [mm], gap [um]``, else the
+    scene's unit of length); ``smooth`` (m) is the smoothing length, and ``noise`` (m) the standard deviation of the
+    gaps (default: estimated).
     """
 
     file: Annotated[str, msgspec.Meta(min_length=1)]
@@ -80,16 +74,22 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If the file is no table of two columns, its heading has other units than ``keys``, or no convex gap follows the
-        points within the noise.
+        If the file is no table of two columns, its heading has other units than ``keys`` or names units that cannot be
+        read, no convex gap follows the points within the noise, or x begins at 0 away from the lowest point.
     """
-    unit = _unit(keys, length)
+    unit = column_units(keys.file, keys.unit, length)
     x, gap = read_points(keys.file, unit)
-    free, fit = (_fitted(x, gap, keys.smooth, convex) for convex in (False, True))
+    # the slope at x = 0 is free: the points tell whether it is that of an even gap
+    free, turning = (_fitted(x, gap, keys.smooth, convex, even=False) for convex in (False, True))
+    fit = _fitted(x, gap, keys.smooth, True) if x[0] == 0 else turning
     spare = max(len(x) - len(fit.x) - 1, 1)
     scatter = float(np.sqrt(np.sum((gap - free.at) ** 2) / spare))
     noise = keys.noise or scatter
-    _check(x, gap - fit.at, keys, max(noise, _ROUNDING * float(np.ptp(gap))))
+    sure = max(noise, _ROUNDING * float(np.ptp(gap)))
+    _check(x, gap - turning.at, keys, sure)
+    more = float(np.sum((gap - fit.at) ** 2) - np.sum((gap - turning.at) ** 2))
+    if more > (_SURE * sure) ** 2:
+        _refuse_mirror(turning, keys)
     return {
         "x": fit.x.tolist(),
         "gap": (fit.gap - fit.gap.min()).tolist(),
@@ -103,80 +103,6 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
             "misfit": float(np.sqrt(np.mean((gap - fit.at) ** 2))),
         },
     }
-
-
-def _unit(keys: ProfileFile, length: float) -> tuple[float, float]:
-    """Units of the columns x and gap, in ``length``."""
-    words = _headings(keys.file)
-    stated = None
-    if words:
-        known = [LENGTHS.get(word.strip().lower()) for word in words]
-        if keys.unit is None and None in known:
-            shown = " and ".join(f"[{word}]" for word in words)
-            allowed = ", ".join(dict.fromkeys(LENGTHS))
-            raise InputError(
-                f"profile.file: {keys.file}: units {shown} in the heading: must be of {allowed}, or give profile.unit"
-            )
-        stated = None if None in known else [factor / length for factor in known if factor]
-    if keys.unit is None:
-        return (stated[0], stated[-1]) if stated else (1.0, 1.0)
-    given = keys.unit if isinstance(keys.unit, tuple) else (keys.unit, keys.unit)
-    if stated and not np.allclose(given, stated, rtol=_ROUNDING, atol=0.0):
-        shown = " and ".join(f"[{word}]" for word in words)
-        raise InputError(
-            f"profile.unit = {list(given)}: must be that of the heading of {keys.file}, {shown}, or be left out"
-        )
-    return given[0], given[1]
-
-
-def _headings(file: str) -> list[str]:
-    """Words in brackets of the heading of the columns: the last line before the first number with two of them, or with
-    one that stands for both; empty if there is none. Words in round brackets count if they are units."""
-    found: list[str] = []
-    for line in read_text(file, _LARGEST).splitlines():
-        if _NUMBER.fullmatch(_words(line)[0]):
-            break
-        pairs = _BRACKETS.findall(line)
-        words = ["".join(pair) for pair in pairs]
-        known = all(word.strip().lower() in LENGTHS for word in words)
-        if (len(words) == _COLUMNS and (known or all(square for square, _ in pairs))) or (len(words) == 1 and known):
-            found = words
-    return found
-
-
-def _words(line: str) -> list[str]:
-    return re.split(r"[\s,;]+", line.strip().strip(",;"))
-
-
-def read_points(file: str, unit: tuple[float, float]) -> tuple[Array, Array]:
-    """Read x and gap, (n,) each, times their ``unit``, sorted by x.
-
-    The columns are separated by spaces, tabs, commas or semicolons; lines before the first number, and lines that begin
-    with #, are headings.
-
-    Raises
-    ------
-    InputError
-        If the file is no table of two columns with at least ten different x, or a number is neither zero nor of a size
-        that a scene allows.
-    """
-    rows: list[tuple[float, float]] = []
-    for number, line in enumerate(read_text(file, _LARGEST).splitlines(), start=1):
-        words = _words(line)
-        if line.lstrip().startswith("#") or not line.strip() or (not rows and not _NUMBER.fullmatch(words[0])):
-            continue
-        if len(words) != _COLUMNS or not all(map(_NUMBER.fullmatch, words)):
-            raise InputError(f"profile.file: {file}: line {number}: must have two numbers, x and gap")
-        place, height = (float(re.sub("[dD]", "e", word)) * each for word, each in zip(words, unit, strict=True))
-        for word, value in zip(words, (place, height), strict=True):
-            if value and not SMALLEST <= abs(value) <= LARGEST:
-                sizes = f"zero or of a size from {SMALLEST} to {LARGEST}"
-                raise InputError(f"profile.file: {file}: line {number}: {word}: must be {sizes}")
-        rows.append((place, height))
-    x, gap = np.array(sorted(rows)).reshape(-1, 2).T
-    if len(np.unique(x)) < _FEWEST:
-        raise InputError(f"profile.file: {file}: must have at least {_FEWEST} different x, not {len(np.unique(x))}")
-    return x, gap
 
 
 def refitted(scene: "AnyScene", count: int, seed: int = 0, smooth: float | None = None) -> list["Scene"]:
@@ -235,39 +161,57 @@ def smoothest(known: Measured) -> float:
     return smooth
 
 
-def _fitted(x: Array, gap: Array, smooth: float, convex: bool) -> _Fit:
-    """Fit a table with a spacing of about ``smooth`` to the points, ``convex`` or not.
+def _fitted(x: Array, gap: Array, smooth: float, convex: bool, even: bool | None = None) -> _Fit:
+    """Fit a table with a spacing of about ``smooth`` to the points, ``convex`` or not, and ``even`` or not (default:
+    even if x begins at 0).
 
-    Unknowns are the gap and its slope in the middle, and the curvatures between the middles of the table's intervals.
+    Unknowns are the gap, its slope in the middle, and the curvatures between the middles of the table's intervals. Of
+    an even gap the slope at 0 is zero, and the curvature up to the first middle is one more unknown.
     """
     span = x[-1] - x[0]
     count = round(span / smooth)
     if not _COARSEST <= count < _MOST:
         allowed = f"from {span / (_MOST - 1):.3g} to {span / _COARSEST:.3g}"
         raise InputError(f"profile.smooth = {smooth}: must be {allowed} for a profile that is {span:.6g} long")
-    step, middle = span / count, (x[0] + x[-1]) / 2
-    at, middles = (x - middle) / step, np.arange(count) - (count - 1) / 2  # in steps, from the middle
-    design = np.column_stack([np.ones_like(at), at, _integrated(at, middles, 2)])
+    even = bool(x[0] == 0) if even is None else even
+    step, origin = span / count, 0.0 if even else (x[0] + x[-1]) / 2
+    at, middles = (x - origin) / step, np.arange(count) + 0.5 + (x[0] - origin) / step  # in steps, from the origin
+    knots = np.append(0.0, middles) if even else middles
+    straight = [np.ones_like(at)] if even else [np.ones_like(at), at]
+    design = np.column_stack([*straight, _integrated(at, knots, 2)])
     q, r = np.linalg.qr(design)
     unit = float(np.ptp(gap)) or 1.0
     if convex:
         from scipy.optimize import lsq_linear  # imports slowly
 
-        low = np.append([-np.inf, -np.inf], np.zeros(count - 1))
+        low = np.append(np.full(len(straight), -np.inf), np.zeros(len(knots) - 1))
         solved = unit * lsq_linear(r, q.T @ (gap / unit), (low, np.inf), method="bvls", tol=1e-14).x
     else:
         solved = np.linalg.lstsq(r, q.T @ gap, rcond=None)[0]
-    slopes = solved[1] + _integrated(middles, middles, 1) @ solved[2:]
+    slopes = (0.0 if even else solved[1]) + _integrated(middles, knots, 1) @ solved[len(straight) :]
     return _Fit(x[0] + step * np.arange(count + 1), np.append(0.0, np.cumsum(slopes)), design @ solved)
 
 
-def _integrated(at: Array, middles: Array, times: int) -> Array:
-    """Unit curvatures of the intervals between ``middles``, integrated once or twice (``times``) from 0, at ``at``:
+def _integrated(at: Array, knots: Array, times: int) -> Array:
+    """Unit curvatures of the intervals between ``knots``, integrated once or twice (``times``) from 0, at ``at``:
     (n, intervals). The first and the last interval go on outwards."""
     whole = at[:, None] ** times
-    beyond = np.maximum(at[:, None] - middles[1:-1], 0.0) ** times
+    beyond = np.maximum(at[:, None] - knots[1:-1], 0.0) ** times
     steps = np.concatenate([whole, beyond], axis=1) / times
     return np.column_stack([steps[:, :-1] - steps[:, 1:], steps[:, -1]])
+
+
+def _refuse_mirror(fit: _Fit, keys: ProfileFile) -> NoReturn:
+    """Raise InputError: the ``fit``, whose slope at x = 0 is free, follows the points better than an even one."""
+    step, slopes = fit.x[1] - fit.x[0], np.diff(fit.gap) / np.diff(fit.x)
+    bent = slopes[1:] - slopes[:-1]
+    at = int(np.clip(np.searchsorted(slopes, 0.0), 1, len(bent)))
+    lowest = fit.x[at] + step / 2 - slopes[at] * step / bent[at - 1] if bent[at - 1] > 0 else fit.x[at]
+    raise InputError(
+        f"profile.file: {keys.file}: x begins at 0, and the lowest point is at about {lowest:.3g} m: must be at 0 for "
+        "one half of an even gap; begin the file there, or let x begin below 0 for a gap of both sides, or, if it is "
+        "at 0, take a shorter smoothing length"
+    )
 
 
 def _check(x: Array, residuals: Array, keys: ProfileFile, noise: float) -> None:

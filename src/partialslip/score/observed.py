@@ -65,8 +65,8 @@ def _means(cells: Array, function: _Function, breaks: Array) -> Array:
 
 
 def _over_weights(x: Array, function: _Function, breaks: Array) -> Array:
-    """Integrals of ``function`` times the shape functions of linear elements between the nodes ``x``, over those of the
-    shape functions."""
+    """Integrals of ``function`` times the shape functions of linear elements with the nodes ``x``, over the integrals
+    of the shape functions."""
     widths = np.diff(x)
 
     def times_shapes(points: Array) -> Array:

@@ -29,7 +29,7 @@ from partialslip.judge import (
 from partialslip.judge.reference import reference as reference_of
 from partialslip.judge.reference import reference_among
 from partialslip.plan import plan
-from partialslip.result import Result
+from partialslip.result import RATCHETS, Result
 from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip_meshes.mesh import Mesh
@@ -115,8 +115,8 @@ class CaseVerdict(Verdict):
     cpu_s : float
         CPU seconds, total of the method.
     waived : bool
-        Whether the quantity need not be judged: there is no bar for it, the result says that it does not hold, or no
-        solution of the scene is known to hold.
+        Whether the quantity need not be judged: there is no bar for it, the result says that it does not hold, no
+        solution of the scene is known to hold, or there is no steady state.
     """
 
     case: str
@@ -177,7 +177,7 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
                 cpu_s=cpu_s,
                 waived=waived
                 or verdict.quantity in unknown
-                or verdict.reason == NO_BAR
+                or verdict.reason in (NO_BAR, RATCHETS)
                 or case.bars.get(f"{method}.{verdict.quantity}", _BAR).value is None,
             )
             for verdict in each

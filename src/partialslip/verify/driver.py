@@ -21,7 +21,7 @@ from partialslip.output.page import check_pdf
 from partialslip.output.place import Request, placed
 from partialslip.plan import plan
 from partialslip.report.figure import traction_svg
-from partialslip.report.files import PAGE, PDF, tractions_csv, write_page
+from partialslip.report.files import PDF, tractions_csv, write_page
 from partialslip.report.rows import Sheet, sheet
 from partialslip.report.sketch import sketch_svg
 from partialslip.result import Result
@@ -36,6 +36,8 @@ from partialslip.verify.suites import SUITES, Maker, Makers, Suite, stress_suite
 from partialslip.verify.verdicts import was_finished, write_verdicts
 
 _SCENES, _FIGURE, _SKETCH = "scenes", "tractions.svg", "sketch.svg"
+# The ledger, and that of a run that begins anew where another one has finished.
+_LEDGER, _NEXT = "ledger.jsonl", ".ledger.jsonl"
 _MOST = 999_999_999  # limit: largest seed
 _LARGEST = 10**8  # limit: bytes of a figure
 
@@ -96,7 +98,7 @@ def verify_suite(
     """Solve and judge the cases of a suite, and write verdicts and report.
 
     A stopped run continues. Cases whose scene, settings or source files have changed are solved again. A finished run
-    starts anew.
+    starts anew; its ledger, verdicts and report stay until the new ones are there.
 
     Parameters
     ----------
@@ -158,8 +160,10 @@ def _verify(
     pdf: bool,
     progress: SweepProgress,
 ) -> Verification:
-    ledger = _ledger(folder)
-    write_verdicts(folder, settings, {}, finished=False)
+    anew = was_finished(folder)
+    ledger = Ledger(folder / (_NEXT if anew else _LEDGER))
+    if not anew:
+        write_verdicts(folder, settings, {}, finished=False)
     finished = {str(entry.get("case")) for entry in ledger}
     again = tuple(case for case, key in keys.items() if case in finished and key not in ledger)
     scenes = None if settings.suite == "stress" else folder / _SCENES
@@ -173,10 +177,13 @@ def _verify(
         page = document(Account(settings, entries, figures, sketches, studies))
         files = write_page(page, folder, pdf=pdf)
         verdicts = _verdicts(ledger, keys)
+        if anew:
+            _replace(folder, pdf)
     except BaseException:
-        write_verdicts(folder, settings, _verdicts(ledger, keys), finished=False)
+        if not anew:
+            write_verdicts(folder, settings, _verdicts(ledger, keys), finished=False)
         raise
-    files = [ledger.path, *write_verdicts(folder, settings, verdicts, finished=True), *files]
+    files = [folder / _LEDGER, *write_verdicts(folder, settings, verdicts, finished=True), *files]
     return Verification(verdicts, files, again)
 
 
@@ -286,15 +293,15 @@ def _within(key: str, value: int | None, usual: int, least: int) -> int:
     return number
 
 
-def _ledger(folder: Path) -> Ledger:
-    """Open the ledger of a stopped run, or start a new one; ledger and report of a finished run are removed."""
-    if was_finished(folder):
-        try:
-            for name in ("ledger.jsonl", PAGE, PDF):
-                (folder / name).unlink(missing_ok=True)
-        except OSError as error:
-            raise InputError(f"{folder / name}: cannot be removed: {error.strerror}") from None
-    return Ledger(folder / "ledger.jsonl")
+def _replace(folder: Path, pdf: bool) -> None:
+    """Let the ledger of a run that began anew take the place of that of the finished one, whose report as PDF goes if
+    the new one has no ``pdf``."""
+    try:
+        (folder / _NEXT).replace(folder / _LEDGER)
+        if not pdf:
+            (folder / PDF).unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder / _LEDGER}: cannot be replaced: {error.strerror}") from None
 
 
 def _verdicts(ledger: Ledger, keys: Mapping[str, str]) -> dict[str, list[CaseVerdict]]:

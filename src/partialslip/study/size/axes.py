@@ -5,7 +5,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
@@ -20,6 +20,7 @@ from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.reading import meant, parse_scene
 from partialslip.scene.writing import scene_tables
 from partialslip.study.size.case import compared_methods, half_plane_method
+from partialslip.study.size.law import BEYOND, CLEAR
 from partialslip.units import Dimension, Units
 
 ACCURACY = "accuracy"  # label of a case besides the axes
@@ -49,6 +50,35 @@ class Axis:
     def name(self) -> str:
         """Name for headings: the keys with a factor of 1."""
         return " = ".join(key for key, times in self.keys.items() if times == 1) or " = ".join(self.keys)
+
+    @property
+    def limit(self) -> float:
+        """Value that stands for an infinite size: what falls with 1/size is CLEAR times smaller there than at the
+        farthest size that a law is trusted for. Infinite for an axis of other settings than sizes of bodies."""
+        sizes = all(key.startswith("bodies.") for key in self.keys) and self._dimension == "m"
+        return CLEAR * BEYOND * max(self.values) if sizes and max(self.values) > 0 else math.inf
+
+    def stays(self, scene: Scene) -> list[str]:
+        """Return the keys of the lengths of the bodies of ``scene`` that the axis does not set."""
+
+        def is_set(path: list[str]) -> bool:
+            keys = [key.split(".") for key in self.keys]
+            return any(len(key) == len(path) and all(map(fnmatchcase, path, key)) for key in keys)
+
+        tables, found = scene_tables(scene), []
+        for known, of in DIMENSIONS.items():
+            path = known.split(".")
+            value: Any = tables
+            for part in path:
+                value = value.get(part) if isinstance(value, dict) else None
+            if path[0] == "bodies" and of == "m" and value is not None and not is_set(path):
+                found.append(known)
+        return found
+
+    @property
+    def beyond(self) -> "Axis":
+        """The axis at its :attr:`limit` alone."""
+        return replace(self, values=(self.limit,))
 
     def label(self, units: Units) -> str:
         """Name with the unit of the values."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # display: contours of the change
 _NAMES = {
-    "a": "a", "p0": "p0, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2",
+    "a": "a", "p_max": "p_max, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2",
     "sigma_xx": "sigma_xx, largest",
 }  # fmt: skip
 _COLUMNS = 2  # display: panels side by side: few, to be read on a phone
@@ -36,6 +36,7 @@ def size_svg(study: SizeStudy) -> str:
 
     Circles are the half-plane's, squares those of equivalent half-planes. Fitted points are filled, others open. Lines
     show the laws, errors of the mesh are grey, and marks on the levels the sizes from which on the difference is below.
+    Horizontal lines show what remains at an infinite size.
     """
     found = [quantity for quantity in study.quantities if any(trend.quantity == quantity for trend in study.trends)]
     count = -(-len(found) // _COLUMNS)
@@ -69,11 +70,13 @@ def _draw_quantity(axes: "Axes", study: SizeStudy, quantity: str) -> None:
         for trend in (each for each in model.trends if each.quantity == quantity):
             _draw_trend(axes, study, model, trend)
             if law := trend.law:
-                spread = (law.bounds[1] - law.bounds[0]) / 2
-                title.append(f"{model.name}: {law.C:.2g} size$^{{-{law.k:.2f}}}$ (± {spread:.1g})")
-    mesh = study.models[0].mesh[quantity]
-    axes.plot(study.models[0].size, np.where(mesh > 0, mesh, np.nan), ".-", color="0.6", ms=3, lw=0.6, zorder=1)
-    for failed in study.models[0].failed:
+                spread, sign = (law.bounds[1] - law.bounds[0]) / 2, "-" if law.floor.value < 0 else "+"
+                remains = f"{law.floor} {sign} " if law.floor.clear else ""
+                title.append(f"{model.name}: {remains}{law.C:.2g} size$^{{-{law.k:.2f}}}$ (± {spread:.1g})")
+    plain = study.models[0]
+    mesh, shown = plain.mesh[quantity], plain.size < plain.limit
+    axes.plot(plain.size[shown], np.where(mesh > 0, mesh, np.nan)[shown], ".-", color="0.6", ms=3, lw=0.6, zorder=1)
+    for failed in _failed(study):
         axes.axvline(failed, **_FAILED, zorder=0)
     for level in LEVELS:
         axes.axhline(level, color="0.8", lw=0.6, zorder=0)
@@ -88,10 +91,12 @@ def _draw_trend(axes: "Axes", study: SizeStudy, model: Sizes, trend: Trend) -> N
         _draw_needed(axes, needed, _farthest(study))
     if law := trend.law:
         for reach, line in (((min(law.sizes), max(law.sizes)), style["ls"]), ((size.min(), _farthest(study)), ":")):
-            ends = np.array(reach)
-            axes.plot(ends, law.C * ends**-law.k, color="black", ls=line, lw=0.9, zorder=1)
+            along = np.geomspace(*reach)
+            axes.plot(along, law.at(along), color="black", ls=line, lw=0.9, zorder=1)
+    if trend.floor and trend.floor.clear:
+        axes.axhline(abs(trend.floor.value), **_REMAINS, ls=style["ls"], zorder=1)
     fitted = np.array([point is PointStatus.FITTED for point in trend.points])
-    for which, fill in ((~fitted, "white"), (fitted, "black")):
+    for which, fill in ((~fitted & (size < model.limit), "white"), (fitted, "black")):
         shown = np.where(off > 0, off, np.nan)[which]
         axes.plot(size[which], shown, style["marker"], mec="black", mfc=fill, ms=5, zorder=3)
 
@@ -110,8 +115,13 @@ def _lowest(study: SizeStudy) -> float:
 
 
 def _all_sizes(study: SizeStudy) -> list[float]:
-    """Return the sizes that were solved or failed."""
-    return sorted([*study.models[0].size.tolist(), *study.models[0].failed])
+    """Return the sizes that were solved or failed, without the one that stands for an infinite size."""
+    plain = study.models[0]
+    return sorted([*plain.size[plain.size < plain.limit].tolist(), *_failed(study)])
+
+
+def _failed(study: SizeStudy) -> list[float]:
+    return [size for size in study.models[0].failed if size < study.models[0].limit]
 
 
 def _extrapolated(study: SizeStudy) -> list[float]:
@@ -159,6 +169,7 @@ def _put_ticks(axis: "XAxis | YAxis", values: Sequence[float], room: Callable[[s
 _MODELS = {HALF_PLANE: {"marker": "o", "ls": "-"}, EQUIVALENT: {"marker": "s", "ls": "--"}}
 _POINT = {"ls": "", "mec": "black", "ms": 5}
 _BOUND = {"mec": "black", "mfc": "white", "ls": "", "ms": 5}
+_REMAINS: dict[str, Any] = {"color": "0.4", "lw": 1.6}
 _FAILED: dict[str, Any] = {"color": "0.5", "lw": 1.2, "ls": (0, (1, 2))}
 _MARKS: dict[str, dict[str, Any]] = {
     "size": {"color": "black", "marker": "|", "ls": "", "ms": 9, "mew": 1.6},
@@ -172,14 +183,15 @@ def _keys(study: SizeStudy) -> "list[Line2D]":
     """Return the entries of the legend: of what is drawn."""
     from matplotlib.lines import Line2D
 
-    bounds = [needed for trend in study.trends for needed in trend.needed if needed.kind is Kind.BOUND]
+    needed = [each for trend in study.trends for each in trend.needed]
+    bounds = [each for each in needed if each.kind is Kind.BOUND]
     entries: list[tuple[str, dict[str, Any], bool]] = []
     for model in study.models:
         points = {point for trend in model.trends for point in trend.points}
         name, point = model.name, _POINT | {"marker": _MODELS[model.name]["marker"]}
         entries += [
             (f"{name}, fitted", {"mfc": "black", **point}, PointStatus.FITTED in points),
-            (f"{name}, not fitted", {"mfc": "white", **point}, bool(points - {PointStatus.FITTED})),
+            (f"{name}, not fitted", {"mfc": "white", **point}, bool(points - {PointStatus.FITTED, PointStatus.LIMIT})),
         ]
     for model in study.models:
         fitted = any(trend.law for trend in model.trends)
@@ -189,12 +201,13 @@ def _keys(study: SizeStudy) -> "list[Line2D]":
     entries += [
         ("law beyond the fitted sizes", {"color": "black", "lw": 0.9, "ls": ":"},
          any(trend.law for trend in study.trends)),
+        ("remains at an infinite size", _REMAINS, any(trend.floor and trend.floor.clear for trend in study.trends)),
         ("error of the mesh", {"color": "0.6", "marker": ".", "ms": 3, "lw": 0.6}, mesh),
-        ("below the level from here on", _MARKS["size"], len(bounds) < len(LEVELS) * len(study.trends)),
+        ("below the level from here on", _MARKS["size"], any(math.isfinite(each.size) for each in needed)),
         ("95 % interval, extrapolated", _MARKS["interval"], bool(_extrapolated(study))),
-        ("at most this size", _MARKS["at most"], any(needed.high < math.inf for needed in bounds)),
-        ("more than this size", _MARKS["more"], any(needed.low > 0 for needed in bounds)),
-        ("not solved", _FAILED, bool(study.models[0].failed)),
+        ("at most this size", _MARKS["at most"], any(each.high < math.inf for each in bounds)),
+        ("more than this size", _MARKS["more"], any(each.low > 0 for each in bounds)),
+        ("not solved", _FAILED, bool(_failed(study))),
     ]  # fmt: skip
     return [Line2D([], [], label=label, **style) for label, style, drawn in entries if drawn]
 

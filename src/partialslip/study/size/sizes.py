@@ -1,6 +1,7 @@
 """Sweeps over sizes of bodies, or other settings of a scene: half-planes compared with finite elements."""
 
 import math
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from itertools import starmap
@@ -10,12 +11,14 @@ import numpy as np
 from msgspec.structs import replace
 
 from partialslip.arrays import Array
-from partialslip.batch.job import Sharing
+from partialslip.batch.job import Job, Sharing
 from partialslip.batch.ledger import Ledger
 from partialslip.batch.sweep import SweepProgress, work_through
+from partialslip.errors import InputError
 from partialslip.fatigue import HotSpot
 from partialslip.fatigue.spots import SIGMA, off_by
 from partialslip.groups import grouped
+from partialslip.judge.known import error_of
 from partialslip.record import Record
 from partialslip.result.record import ResultRecord
 from partialslip.scene import Scene
@@ -24,7 +27,7 @@ from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solv
 from partialslip.study.size.law import CLEAR, Sizes
 from partialslip.units import Dimension, Units
 
-DIFFERENCES = ("a", "p0", "p", "m", "n", "q")
+DIFFERENCES = ("a", "p_max", "p", "m", "n", "q")
 _COARSER = 8.0  # accuracy: ratio of the accuracies of two successive meshes
 _FINER = 3  # limit: largest number of additional meshes where the half-plane's difference is not clear
 _FINEST = 1e-8  # limit: finest accuracy that rounding allows
@@ -53,6 +56,8 @@ def measure(
         Where the difference of the half-plane is less than ten times the mesh's error, up to three further meshes
         follow, each eight times finer. Differences of stresses call for no further meshes.
 
+    One axis of sizes is solved at its limit, too, which tells what remains of the differences.
+
     Returns
     -------
     list of Sized
@@ -65,19 +70,44 @@ def measure(
     PartialslipError
         If a worker process dies; finished cases are in the ledger.
     """
-    solve, asked = Sharing(solve_sized), cases(scene, axes, (_COARSER, 1.0) if control else (1.0,))
+    solve, meshes = Sharing(solve_sized), (_COARSER, 1.0) if control else (1.0,)
+    asked, (limit, outside) = cases(scene, axes, meshes), _at_limit(scene, axes, meshes)
+    asked += limit
     work_through([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     finer = [_COARSER**-k for k in range(1, _FINER + 1)] if control else []
     for accuracy in (each for each in finer if each * scene.fem.accuracy >= _FINEST):
         points = _by_point(axes, (ledger.read(case.key, Sized) for case in asked))
-        unclear = {point for point, meshes in points.items() if not _clear(meshes)}
+        unclear = {point for point, found in points.items() if not _clear(found)}
+        if unclear <= {(axes[0].limit,)}:
+            break  # what remains need not be known better than the differences
         asked += [
             case
-            for case in cases(scene, axes, (accuracy,))
-            if tuple(case.labels[each.name] for each in axes) in unclear
+            for case in (*cases(scene, axes, (accuracy,)), *_at_limit(scene, axes, (accuracy,))[0])
+            if _point(axes, case) in unclear
         ]
         work_through([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
-    return [ledger.read(case.key, Sized) for case in asked]
+    return [*(ledger.read(case.key, Sized) for case in asked), *outside]
+
+
+def _at_limit(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float]) -> tuple[list[Job], list[Sized]]:
+    """Return the jobs at the limit of one axis; and an entry that says why the scene cannot have such sizes."""
+    axis, *others = axes
+    if others or math.isinf(axis.limit):
+        return [], []
+    try:
+        return cases(scene, [axis.beyond], accuracies), []
+    except InputError as error:
+        return [], [Sized(labels={axis.name: axis.limit, ACCURACY: 1.0}, error=str(error))]
+
+
+def at_limit(axes: Sequence[Axis], of: Job | Sized) -> bool:
+    """Return whether a job or entry stands for an infinite size, which nobody asked for."""
+    return _point(axes, of) == (axes[0].limit,)
+
+
+def _point(axes: Sequence[Axis], of: Job | Sized) -> tuple[float, ...]:
+    """Return the point of the grid of ``axes`` that a job or entry belongs to."""
+    return tuple(float(of.labels[each.name]) for each in axes)
 
 
 def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes:
@@ -97,6 +127,7 @@ def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes
         {key: np.array([off[key] for off, _ in points.values()]) for key in keys},
         {key: np.array([mesh[key] for _, mesh in points.values()]) for key in keys},
         {size: error for size, error in sorted(errors.items()) if size not in points},
+        axis.limit,
     )
 
 
@@ -136,14 +167,14 @@ def refused(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float,
 def _by_point(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float, ...], list[Sized]]:
     """Return the entries by point of the grid, from the coarsest mesh to the finest, without failed cases."""
     return grouped(
-        (tuple(float(entry.labels[each.name]) for each in axes), entry)
+        (_point(axes, entry), entry)
         for entry in sorted(entries, key=lambda entry: -float(entry.labels[ACCURACY]))
         if entry.run
     )
 
 
 def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], dict[str, float]]]:
-    """Return the differences at one point on the finest mesh, and the errors of the meshes, by half-planes.
+    """Return the changes at one point on the finest mesh, and the errors of the meshes, by half-planes.
 
     The error of the finite elements is the larger of the method's estimate and an eighth of the change by the last
     refinement; NaN without either, as for a fixed element size. That of the rig, and that of half-planes that are not
@@ -151,13 +182,13 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
     """
     run = meshes[-1].run
     assert run
-    found, estimate, beside = _off(meshes[-1]), _estimate(run.methods["fem"]), _estimate(_half_plane(run))
+    found, estimate, beside = _off(meshes[-1]), _estimate(run.methods["fem"]), _half_plane_errors(run)
     coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
     rough = _off(coarser[-1]) if coarser else {}
     changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in DIFFERENCES}
     mesh = {key: float(np.fmax(estimate.get(key, math.nan), changed[key])) for key in DIFFERENCES}
     both = {key: mesh[key] + beside.get(key, 0.0) for key in DIFFERENCES}
-    differences = {HALF_PLANE: ({key: abs(found.get(key, math.nan)) for key in DIFFERENCES}, both)}
+    differences = {HALF_PLANE: ({key: found.get(key, math.nan) for key in DIFFERENCES}, both)}
     if meshes[-1].equivalent:
         left, rig = _left(meshes[-1])
         both = {key: mesh[key] + rig.get(key, 0.0) for key in DIFFERENCES}
@@ -167,7 +198,8 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
         for key, spot in meshes[-1].stresses.get(name, {}).items():
             if key in true:
                 own = spot.error if name == HALF_PLANE else _rig_error(meshes[-1])
-                off[key], errors[key] = off_by(spot, true[key]), _sum(own, true[key].error)
+                off[key] = (spot.value - true[key].value) / abs(true[key].value)
+                errors[key] = _sum(own, true[key].error)
     return differences
 
 
@@ -197,7 +229,7 @@ def _sum(*errors: float | None) -> float:
 
 def _clear(meshes: Sequence[Sized]) -> bool:
     off, mesh = _differences(meshes)[HALF_PLANE]
-    return all(not off[key] < CLEAR * mesh[key] for key in DIFFERENCES)
+    return all(not abs(off[key]) < CLEAR * mesh[key] for key in DIFFERENCES)
 
 
 def _dofs(entry: Sized) -> int | None:
@@ -206,9 +238,15 @@ def _dofs(entry: Sized) -> int | None:
 
 
 def _estimate(result: ResultRecord) -> dict[str, float]:
-    """Return the error estimates of a ``result`` by quantity; that of p for p0."""
+    """Return the error estimates of a ``result`` by quantity; that of p for p_max."""
     found = {key: error for key, error in result.estimate.items() if error is not None}
-    return found | ({"p0": found["p"]} if "p" in found else {})
+    return found | ({"p_max": found["p"]} if "p" in found else {})
+
+
+def _half_plane_errors(run: Record) -> dict[str, float]:
+    """Return the error estimates of the half-planes of a ``run`` by quantity; NaN where they have none."""
+    name, result = next((name, found) for name, found in run.methods.items() if name != "fem")
+    return {key: error_of(result, key, name) for key in DIFFERENCES}
 
 
 def _off(entry: Sized) -> dict[str, float]:
@@ -216,7 +254,7 @@ def _off(entry: Sized) -> dict[str, float]:
     assert entry.run
     fem, plain, errors = entry.run.methods["fem"], _half_plane(entry.run), entry.run.comparison["fem"].errors
     a = plain.a or math.nan
-    found = {"a": (fem.a or math.nan) / a - 1, "p0": (fem.p_max or math.nan) / (plain.p_max or math.nan) - 1}
+    found = {"a": (fem.a or math.nan) / a - 1, "p_max": (fem.p_max or math.nan) / (plain.p_max or math.nan) - 1}
     for key, end, true in (("m", fem.m, plain.m), ("n", fem.n, plain.n)):
         if end is not None and true is not None:
             found[key] = (end - true) / a
@@ -235,8 +273,8 @@ def _left(entry: Sized) -> tuple[dict[str, float], dict[str, float]]:
         return {}, {}
     errors = entry.equivalent.comparison["equivalent"].errors
     shares = entry.equivalent.methods["equivalent"].shares.get("rig", {})
-    left = {key: errors.get("p_max" if key == "p0" else key) for key in DIFFERENCES}
-    rig = {key: shares.get("p" if key == "p0" else key) for key in DIFFERENCES}
+    left = {key: errors.get(key) for key in DIFFERENCES}
+    rig = {key: shares.get("p" if key == "p_max" else key) for key in DIFFERENCES}
     return _known(left), _known(rig)
 
 
@@ -247,11 +285,14 @@ def _known(values: Mapping[str, float | None]) -> dict[str, float]:
 def grid(axes: Sequence[Axis], entries: Iterable[Sized], quantity: str) -> tuple[Array, Array, Array]:
     """Return the values of two ``axes`` and the absolute change of ``quantity``, (second, first), from ``entries``.
 
-    NaN where not solved.
+    NaN where not solved. The former name ``p0`` of ``p_max`` is deprecated.
     """
+    if quantity == "p0":
+        warnings.warn("p0: the largest pressure is now p_max; p0 is 2 P/(pi a)", DeprecationWarning, stacklevel=2)
+        quantity = "p_max"
     x, y = (np.array(each.values) for each in axes)
     points = {
-        point: _differences(meshes)[HALF_PLANE][0].get(quantity, math.nan)
+        point: abs(_differences(meshes)[HALF_PLANE][0].get(quantity, math.nan))
         for point, meshes in _by_point(axes, entries).items()
     }
     return x, y, np.array([[points.get((first, second), math.nan) for first in x.tolist()] for second in y.tolist()])

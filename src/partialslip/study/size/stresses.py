@@ -20,7 +20,7 @@ _SURFACE = "surface"
 _USUAL = "swt"  # display: the criterion of scenes that have no constants of a criterion
 _MODELS = (FEM, HALF_PLANE, EQUIVALENT)
 _UNLIKE = "stresses of the half-plane are not known: no method finds them in half-planes of unlike materials"
-NOT_ASKED = "no stresses: not asked for by a table fatigue; --set effects.subsurface=true tells the largest sigma_xx"
+NOT_ASKED = "no stresses: the table fatigue has no constant; --set effects.subsurface=true tells the largest sigma_xx"
 
 
 def criteria_of(scene: Scene, names: Sequence[str] | None) -> list[str]:
@@ -38,7 +38,7 @@ def criteria_of(scene: Scene, names: Sequence[str] | None) -> list[str]:
     if RUIZ in found:
         raise InputError(f"--criterion {RUIZ}: must be another for a study of sizes; use partialslip fatigue")
     if scene.fatigue == Fatigue():
-        needs = "a table fatigue, for example --set fatigue.distance=LENGTH"
+        needs = "a constant in the table fatigue, for example --set fatigue.distance=LENGTH"
         raise InputError(f"--criterion {','.join(found)}: must be given only with {needs}")
     return found
 

@@ -20,6 +20,9 @@ _MARKS = {
     PointStatus.UNKNOWN: "u",
     PointStatus.FEW: "x",
     PointStatus.NO_LAW: "n",
+    PointStatus.FLOOR: "r",
+    PointStatus.LIMIT: "v",
+    PointStatus.NO_LIMIT: "l",
 }
 _BY = "half-planes"  # heading of the names of models
 _LISTED = 3  # display: largest number of sizes that are listed
@@ -28,6 +31,7 @@ _MEANINGS = {
     Kind.INTERPOLATED: "interpolated: between two solved sizes",
     Kind.EXTRAPOLATED: "extrapolated: by the law, with the 95 % confidence interval",
     Kind.BOUND: "<=, > and to: only bounds, solved sizes",
+    Kind.NEVER: "never: the difference at an infinite size, of which the sizes that stay make this share",
 }
 
 
@@ -82,7 +86,16 @@ def size_study(scene: Scene, axis: Axis, entries: Sequence[Sized]) -> SizeStudy:
     """Evaluate the ``entries`` of a ledger for a sweep of ``scene`` along ``axis``."""
     sweeps = [along(axis, entries, name) for name in (HALF_PLANE, EQUIVALENT)]
     models = tuple(each for each in sweeps if each.name == HALF_PLANE or each.size.size)
-    return SizeStudy(scene, axis, models, tuple(case_remarks([axis], entries)), hot_spots_along(axis, entries))
+    remarks = (*case_remarks([axis], entries), _limit_remark(scene, axis, models[0]))
+    return SizeStudy(scene, axis, models, remarks, hot_spots_along(axis, entries))
+
+
+def _limit_remark(scene: Scene, axis: Axis, sizes: Sizes) -> str:
+    """Return at which size what remains was solved, and which sizes stay."""
+    if sizes.limit not in sizes.size:
+        return "what remains at an infinite size is not known: no laws, and sizes hold up to the largest solved"
+    stays = " and ".join(filter(None, (", ".join(axis.stays(scene)), "the slopes of the profile")))
+    return f"infinite size: solved at {size_text(sizes.limit)}; {stays} stay"
 
 
 def case_remarks(axes: Sequence[Axis], entries: Sequence[Sized]) -> list[str]:
@@ -128,11 +141,12 @@ def differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str, ...], 
 def laws_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
     """Return headings and rows of the fitted laws."""
     rows: Rows = [
-        (*of, f"{law.C:.3g}", f"{law.k:.2f}", "{:.2f} to {:.2f}".format(*law.bounds), _listed(law.sizes))
+        (*of, str(law.floor), f"{law.C:.3g}", f"{law.k:.2f}", "{:.2f} to {:.2f}".format(*law.bounds),
+         _listed(law.sizes))
         for *of, trend in _by_quantity(study)
         if (law := trend.law)
-    ]
-    return ("C size^-k", _BY, "C", "k", "95 %", "fitted sizes"), rows
+    ]  # fmt: skip
+    return ("remains +- C size^-k", _BY, "remains", "C", "k", "95 %", "fitted sizes"), rows
 
 
 def needed_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
@@ -166,12 +180,12 @@ def size_notes(study: SizeStudy) -> list[str]:
 
 
 def _fitted(point: PointStatus) -> str:
-    return f"{point}" if point is PointStatus.FITTED else f"not fitted: {point}"
+    return f"{point}" if point in (PointStatus.FITTED, PointStatus.LIMIT) else f"not fitted: {point}"
 
 
 def points_csv(study: SizeStudy) -> str:
-    """Return all points of ``study`` as CSV: difference and mesh's error by half-planes, size and quantity, and whether
-    it is fitted."""
+    """Return all points of ``study`` as CSV: absolute difference and mesh's error by half-planes, size and quantity,
+    and whether it is fitted."""
     rows: list[tuple[object, ...]] = [
         (model.name, size, trend.quantity, model.off[trend.quantity][k], model.mesh[trend.quantity][k],
          trend.points[k])
@@ -194,13 +208,15 @@ def laws_csv(study: SizeStudy) -> str:
             needed.level,
             needed.kind,
             *("" if not math.isfinite(each) or each == 0 else each for each in (needed.size, needed.low, needed.high)),
+            *((abs(trend.floor.value), trend.floor.error) if trend.floor else ("", "")),
         )
         for model in study.models
         for trend in model.trends
         for needed in trend.needed
     ]
     sizes = map(study.heading, ("size", "low", "high"))
-    return csv_text((_BY, "quantity", "C", "k", "k low", "k high", "difference below", "kind", *sizes), rows)
+    head = (_BY, "quantity", "C", "k", "k low", "k high", "difference below", "kind", *sizes)
+    return csv_text((*head, "remains", "error of what remains"), rows)
 
 
 def marked(difference: float, point: PointStatus) -> str:
