@@ -89,10 +89,11 @@ def test_centre_auto_puts_x_in_the_middle(tmp_path, capsys):
     off = score(SCENE, path).results["t.csv"]
     assert off.m is None
     put = score(SCENE, path, centre="auto")
-    assert put.comparisons["t.csv"].m < 1e-9
+    assert put.comparisons["t.csv"].m < min(2e-4, put["t.csv"].estimate["m"])
     assert f"at x = {3 * EXACT.a:.6g} m" in " ".join(put.results["t.csv"].notes)
     folder = str(tmp_path / "out")
-    assert main(["score", "fretting-aluminium", str(path), "--centre", "auto", "--bar", "1e-2", "--out", folder]) == 0
+    assert main(["score", "fretting-aluminium", str(path), "--centre", "auto", "--bar", "1e-2", "--out", folder]) == 4
+    assert "this table tells m to" in capsys.readouterr().out  # 61 points do not tell it to 1e-2
     assert (
         main(["score", "fretting-aluminium", str(path), "--columns", "x=1,p=2,dq=dq", "--out", folder, "--force"]) == 0
     )
@@ -196,5 +197,5 @@ def test_a_result_of_an_exported_deck_states_the_units_of_the_deck(tmp_path, end
     (tmp_path / "si.frd").write_text(text, "ascii")
     found, known = read_tractions(path, SHOWN), read_tractions(tmp_path / "si.frd", SCENE)
     assert found.x == pytest.approx(known.x * size, rel=1e-12)
-    assert ["the units of the deck" in note for note in found.notes] == [True] * bool(ending)
+    assert sum("the units of the deck" in note for note in found.notes) == bool(ending)
     assert found.p == pytest.approx(known.p * {1.0: 1.0}.get(size, size**-2), rel=1e-12)

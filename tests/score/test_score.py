@@ -53,25 +53,29 @@ def test_errors_fall_with_the_spacing(exact, tmp_path, name):
         coarse, fine = (tables[k][0].settings[f"spacing_hides_{key}"] for k in (0, 2))
         assert np.log(coarse / fine) / np.log(16) > 0.9
     for key in ("a", "m", "n"):
-        assert getattr(found[0], key) < 0.25 * 2.2 / 80
+        # the flat's corner has three points at the widest spacing: two unknowns and the end
+        assert getattr(found[0], key) < (0.5 if name == "flat-rounded" else 0.25) * 2.2 / 80
         # of the flat's m the points within the corner, beside the kink of p, are few at that spacing
-        assert getattr(found[1], key) < (0.004 if name == "flat-rounded" else 0.002) * 2.2 / 320
+        assert getattr(found[1], key) < (0.01 if name == "flat-rounded" else 0.002) * 2.2 / 320
         assert getattr(found[2], key) < 0.002 * 2.2 / 1280
     assert {c.outcome for c in found} == {Outcome.NOT_JUDGED}  # without bars nothing passes
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_ends_from_twenty_points(exact, tmp_path, name):
-    """A spacing of a ninth of a: ends to a fifth of that; the flat's corner, where p bends within one, to half."""
+    """A spacing of a ninth of a: ends to a fifth of that. To half of it, where four points stick; to the whole beside
+    the flat's corner, which is narrower than the spacing. The estimates tell."""
     scene, result = exact[name]
-    _, comparison = errors(scene, written(tmp_path / "t.csv", sampled(result, 20)))
-    part = 0.5 if name == "flat-rounded" else 0.2
+    found, comparison = errors(scene, written(tmp_path / "t.csv", sampled(result, 20)))
+    part = {"fretting-aluminium": 0.5, "flat-rounded": 1.0}.get(name, 0.2)
     assert max(comparison.a, comparison.m, comparison.n) < part * 2.2 / 19
+    assert all(getattr(comparison, key) <= found.estimate[key] for key in "amn")
 
 
 @pytest.mark.parametrize("name", SCENES[:4])
 def test_noise_is_seen_and_told(exact, tmp_path, name):
-    """One percent of p0 and of f p0 at every point: ends to a tenth of a spacing or so, and the estimate tells."""
+    """One percent of p0 and of f p0 at every point: ends to a tenth of a spacing or so. As noise hides what kind the
+    values are, and whether the end is blurred, the estimate is a spacing or two."""
     scene, result = exact[name]
     random = np.random.default_rng(3)
     off, told = [], []
@@ -86,7 +90,8 @@ def test_noise_is_seen_and_told(exact, tmp_path, name):
     assert len(off) >= 20  # of 30, the others not given
     assert np.median(off) < 0.15 * spacing
     assert max(off) < 2 * spacing
-    assert 0.3 < np.median(told) / np.median(off) < 10
+    assert all(error <= own for error, own in zip(off, told, strict=True))
+    assert 0.5 * spacing < np.median(told) < 2 * spacing
     assert found.settings["noise_over_p0"] == pytest.approx(0.01, rel=0.6)
 
 
@@ -178,7 +183,7 @@ def test_calculix(ending, off):
 
 
 MISTAKES = {
-    "shifted by half a cell": (lambda t, h: t + np.array([h / 2, 0, 0]), "left right p q", "middle is at x = 0.0069 a"),
+    "shifted by half a cell": (lambda t, h: t + np.array([h / 2, 0, 0]), "left right p", "middle is at x = 0.0034 a"),
     "q of the other sign": (
         lambda t, _: t * [1, 1, -1],
         "q dQ",
@@ -186,7 +191,7 @@ MISTAKES = {
     ),
     "half a cycle": (lambda t, _: t * [1, 1, 0.5], "q dQ", "dq may be of half a cycle: correct with --factors 1,1,2"),
     "without the right half": (lambda t, _: t[: len(t) // 2], "a p q P", "of the scene's P"),
-    "a hole": (lambda t, _: np.delete(t, slice(12, 26), axis=0), "p q", ""),
+    "a hole": (lambda t, _: np.delete(t, slice(24, 52), axis=0), "p q", ""),
     "p and q exchanged": (lambda t, _: np.column_stack([t[:, 0], t[:, 2], t[:, 1]]), "p q P dQ", "of the scene's P"),
     "mirrored": (
         lambda t, _: t * [-1, 1, 1],
@@ -212,7 +217,7 @@ MISTAKES = {
 def test_mistakes_in_a_table_are_named(exact, tmp_path, mistake):
     """Against bars that the table meets without the mistake."""
     scene, result = exact["fretting-aluminium"]
-    table = sampled(result, 161)
+    table = sampled(result, 321)
     clean, good = errors(scene, written(tmp_path / "t.csv", table), bar=5e-4)
     assert good.passed
     assert not clean.notes
@@ -293,8 +298,8 @@ def test_on_the_command_line(exact, tmp_path, monkeypatch, capsys):
     assert "p/p0, $a_[red]$.csv" in (folder / "report.html").read_text("utf-8")
     record = json.loads((folder / "results.json").read_text("utf-8"))
     assert record["comparison"]["$a_[red]$.csv"]["errors"]["m"] < 1e-6
-    for f, code in (("0.5", 0), ("0.501", 1)):
-        given = "--set", f"friction.f={f}", "$a_[red]$.csv", "--bar", "1e-5"  # options may stand before the file
+    for f, code in (("0.5", 0), ("0.51", 1)):
+        given = "--set", f"friction.f={f}", "$a_[red]$.csv", "--bar", "1e-4"  # options may stand before the file
         assert main(["score", "hertz-shear", *given, "--json"]) == code
         assert json.loads(capsys.readouterr().out)["methods"].keys() == {"exact", "$a_[red]$.csv"}
 

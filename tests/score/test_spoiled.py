@@ -2,14 +2,12 @@
 
 import importlib
 
-import numpy as np
 import pytest
 import spoiling
 
 from partialslip import load_scene
 
 method = importlib.import_module("partialslip.score.method")
-ends = importlib.import_module("partialslip.score.ends")
 SCENE = load_scene("fretting-aluminium")
 
 
@@ -37,45 +35,12 @@ def test_friction_taken_from_the_scene_hides_slip(monkeypatch):
     """The scene's f for the one that the tractions show: slip a little below the bound is taken for stick."""
     spoiled = spoiling.sampled(SCENE, spoiling.points(spoiling.exact(SCENE), "151")).times(dq=1 - 1e-6)
     found = spoiling.samples(spoiled.columns, "t", (1, 1, 1), 1)
-    assert method.scored(SCENE, found, "t", "t").m == pytest.approx(spoiled.truth.m, rel=1e-6)
+    assert method.scored(SCENE, found, "t", "t").m == pytest.approx(spoiled.truth.m, rel=1e-5)
     seen = method.frictions
     asked = lambda p, dq, f: tuple(side._replace(f=f) for side in seen(p, dq, f))  # noqa: E731
     monkeypatch.setattr(method, "frictions", asked)
     wrong = method.scored(SCENE, found, "t", "t")
     assert wrong.m is None or abs(wrong.m - spoiled.truth.m) > 0.1 * spoiled.truth.a
-
-
-@pytest.mark.fault
-def test_an_end_is_looked_for_where_shear_fades_out(monkeypatch):
-    """Soft penalty friction beside the flat: 2 f p - |dq| fades away over half of the contact, and polynomials through
-    its last points have their root at the contact's end."""
-    scene = load_scene("flat-rounded")
-    clean = spoiling.sampled(scene, spoiling.points(spoiling.exact(scene), "151"))
-    ((at, slip),) = spoiling.penalty(scene, 1e-1, 1e-1).values()
-    x, p = clean.columns["x"], clean.columns["p"]
-    shear = 2 * scene.friction.f * p * np.tanh(np.interp(x / clean.truth.a, at, slip))
-    spoiled = spoiling.samples({"x": x, "p": p, "dq": shear}, "t", (1, 1, 1), 1)
-    found = method.scored(scene, spoiled, "t", "t")
-    assert found.n is None
-    assert "m and n are not given" in found.notes[-1]
-    monkeypatch.setattr(ends, "_RISE", np.inf)
-    wrong = method.scored(scene, spoiled, "t", "t")
-    assert abs(wrong.n - clean.truth.n) > 10 * wrong.estimate["n"] * clean.truth.a
-
-
-@pytest.mark.fault
-def test_a_running_mean_is_taken_for_a_drift(monkeypatch):
-    """The mean of a square root over some length falls with the power 3/2, as where an end of the stick zone drifted.
-    Only the ends of the contact, which are spread as much, show the difference."""
-    scene = load_scene("flat-rounded")
-    monkeypatch.setattr(spoiling, "spoiled", lambda *_: [("moving average", "9", averaged)])
-    averaged = spoiling.averaged(spoiling.sampled(scene, spoiling.points(spoiling.exact(scene), "151")), 9)
-    (found,) = spoiling.readings(scene, "151")
-    assert found.honest
-    monkeypatch.setattr(method, "blur", lambda *_: 0.0)
-    (wrong,) = spoiling.readings(scene, "151")
-    assert not wrong.honest
-    assert max(wrong.errors) > wrong.spacing
 
 
 @pytest.mark.slow

@@ -25,7 +25,7 @@ _TERMS = (3, 4)  # accuracy: of its polynomial; of both the one that leaves the 
 _RISEN = 10.0  # accuracy: times the noise: least value where a fit begins
 _MOST = 48  # cost: most points of a fit; longer ones are thinned out
 _DOUBT = 1e-3  # accuracy: probability that noise alone makes the right end fit so much worse than the best
-_SCAN, _AGAIN = 41, 5  # cost: ends tried at once, and how often between the neighbours of the best
+_SCAN, _AGAIN = 31, 7  # cost: ends tried at once, and how often between the neighbours of the best
 FEWEST = 3  # accuracy: points beyond the end of a square root that show a drift
 NOISE_FACTOR = 4.0  # accuracy: standard deviations of the noise: smaller values count as noise
 ZERO_LEVEL = 1e-9  # accuracy: of the largest value: smaller values count as zero
@@ -97,7 +97,7 @@ def possible_averages(x: Array, p: Array, averages: Sequence[Average]) -> tuple[
     right = _Reading(x, p, last, first, least).possible(averages)
     both = [each for each in averages if each in left and each in right]
     found = both or [each for each in averages if each in left or each in right]
-    plain = [each for each in found if each.count == 1]  # an average over points must show
+    plain = [each for each in found if each.points == 1]  # an average over points must show
     return tuple(plain or found)
 
 
@@ -287,11 +287,11 @@ class _Reading:
         """Ends from ``low`` to ``high``, (e,), closer together beside the best, and the sum of squares that each leaves
         of the values at the ``window``."""
         scale = float(self.x[window[-1]] - self.x[window[0]])
-        x, y, powers = self.x / scale, self.values[window], power + np.arange(terms)
+        x, y, powers = self.x / scale, self.values[window], power + np.arange(float(terms))
         ends = np.linspace(low, high, _SCAN) / scale
         every: list[tuple[Array, Array]] = []
         for _ in range(_AGAIN):
-            Q, _R = np.linalg.qr(average.powers(x, window, ends, powers))
+            Q, _ = np.linalg.qr(average.powers(x, window, ends, powers))
             left = y - np.einsum("enk,ek->en", Q, np.einsum("enk,n->ek", Q, y))
             misfits = (left**2).sum(axis=1) + len(y) * (ZERO_LEVEL * np.abs(y).max()) ** 2
             every.append((ends, misfits))

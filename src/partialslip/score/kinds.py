@@ -17,27 +17,27 @@ _INTEGRALS: dict[Kind, int] = {"sampled": 0, "mean": 1, "nodal": 2}  # fixed: of
 
 
 class Average(NamedTuple):
-    """How a table's values are made from tractions: values of a ``kind``, averaged over ``count`` neighbouring ones."""
+    """How a table's values are made from tractions: values of a ``kind``, averaged over ``points`` neighbours."""
 
     kind: Kind
-    count: int = 1
+    points: int = 1
 
     def begins(self, x: Array, at: int) -> float:
         """Left end, m, of the piece of the contact line that tells in the value at point ``at`` of ``x`` (n,), m."""
-        points = _points(x, np.array([at - self.count // 2]))
+        points = _points(x, np.array([at - self.points // 2]))
         return float({"sampled": points[1], "mean": (points[0] + points[1]) / 2, "nodal": points[0]}[self.kind][0])
 
     def hidden(self, least: float, spacing: float) -> float:
         """Length, m, beside an end over which (end - x)^(1/2) has averages of at most ``least``, at points that are a
         ``spacing`` (m) apart."""
         times = _INTEGRALS[self.kind]
-        factor = self.count * spacing**times * np.prod([1.5 + k for k in range(times)])
+        factor = self.points * spacing**times * np.prod([1.5 + k for k in range(times)])
         return float((least * factor) ** (1 / (times + 0.5)))
 
     def powers(self, x: Array, at: Indices, ends: Array, powers: Array) -> Array:
         """Averages (e, n, k) of max(end - x, 0)^power at the points ``at`` (n,) of ``x``, for the ``ends`` (e,), m, and
         the ``powers`` (k,): in closed form, as divided differences of integrals of the power."""
-        neighbours = at[:, None] + np.arange(-(self.count // 2), self.count // 2 + 1)
+        neighbours = at[:, None] + np.arange(-(self.points // 2), self.points // 2 + 1)
         every, places = np.unique(neighbours, return_inverse=True)
         values = self._powers(x, every, ends, powers)
         return np.asarray(values[:, places.reshape(neighbours.shape)].mean(axis=2))
@@ -72,7 +72,7 @@ def note(averages: tuple[Average, ...], usual: Kind) -> str:
     kinds = " or ".join(dict.fromkeys(KINDS[each.kind] for each in averages))
     if len(averages) > 1:
         return f"p does not show whether it is {kinds}: ends are known to a spacing or so; tell the kind with --kind"
-    points = f" averaged over {averages[0].count} points" if averages[0].count > 1 else ""
+    points = f" averaged over {averages[0].points} points" if averages[0].points > 1 else ""
     return f"read as {kinds}{points}, as the ends of p show: if it is another kind, tell it with --kind"
 
 

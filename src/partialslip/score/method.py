@@ -211,7 +211,7 @@ def _stick_zone(
     """
     asked, pressed = scene.friction.f, _pressed(scene)
     p, dq, count = alike(p, dq, inside)
-    x, averages = x[inside], tuple(dict.fromkeys(Average(each.kind, max(each.count, count)) for each in averages))
+    x, averages = x[inside], tuple(dict.fromkeys(Average(each.kind, max(each.points, count)) for each in averages))
     sides = frictions(p, dq, asked)
     slacks = [2 * side.uncertainty * p for side in sides]
     room = 2 * min(side.f for side in sides) * p - np.abs(dq)

@@ -14,7 +14,7 @@ from partialslip.scene import Scene
 from partialslip.score.calculix import LoadPoints, read_dat, read_frd, stated_units
 from partialslip.score.csvfile import Columns, read_csv
 from partialslip.score.headers import COLUMN_DIMENSIONS, SHEAR_COLUMNS
-from partialslip.score.kinds import Kind, note
+from partialslip.score.kinds import Kind, cells_around, note
 from partialslip.score.rows import Label, check_equal_x
 from partialslip.score.samples import Samples, samples
 from partialslip.units import Units
@@ -54,7 +54,7 @@ def read_tractions(
     InputError
         If the file cannot be read or its content is not valid.
     """
-    origin, suffix = str(file), file.suffix.lower()
+    origin, suffix, faces = str(file), file.suffix.lower(), False
     load, anew = scene.load, scene.presses_anew
     load_points = LoadPoints(*load.ends, len(load.points), every=not load.in_phase)
     if scene.only_pressed:
@@ -72,7 +72,6 @@ def read_tractions(
             found = read_frd(mesh, origin, at, load_points)
         else:
             found, faces = read_dat(content, mesh, origin, at, load_points)
-            kind = kind or ("mean" if faces else None)
         if not anew:
             del found["p1"]
         units = stated_units(mesh) or scene.units
@@ -90,6 +89,8 @@ def read_tractions(
             )
         notes += (f"{columns.made_of}: shear at load point 2, taken as half of its change",)
     made = samples(columns.values, origin, factors, order, kind)
+    if faces and kind is None:  # compared as means; how the face with an end is averaged remains guessed
+        made = replace(made, kind="mean", cells=cells_around(made.x))
     if not load.fully_reversed and {"q", "Ft"} & set(columns.values):  # half of the change, but not q at load point 2
         made = replace(made, q1=None, q2=None)
     if made.guessed and (guess := note(made.averages, "nodal" if "Fn" in columns.values else "sampled")):

@@ -141,7 +141,7 @@ def samples(
     else:
         dq, q1, q2 = shears[0], None, None
     averages = (Average(kind),) if kind else _guessed(x, p, normal == "Fn")
-    own = averages[0].kind
+    own = kind or ("nodal" if normal == "Fn" else averages[0].kind)
     if normal != "Fn" and own != "sampled":
         cells = cells_around(x) if own == "mean" else cells_of_nodes(x)
     return Samples(x, p, dq, q1, q2, cells, resolution, "", notes, p1, own, kind is None, averages)
