@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 import partialslip
-from partialslip.judge import Comparison
 from partialslip.result import Clock, Result
-from partialslip.threads import one_thread
+from partialslip.run.judge import Comparison
+from partialslip.tools.threads import one_thread
 from partialslip_fem.bodies import Grading
 from partialslip_fem.estimate import _BENT as BENT
 from partialslip_fem.estimate import bend_errors

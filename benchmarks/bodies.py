@@ -22,8 +22,8 @@ from pathlib import Path
 import numpy as np
 
 import partialslip
-from partialslip.errors import InputError
-from partialslip.fatigue import hot_spots
+from partialslip.study.fatigue import hot_spots
+from partialslip.tools.errors import InputError
 
 DOCS = Path(__file__).parents[1] / "docs"
 UNIT = 1e-3  # m, the half-width a of the scenes of sizes

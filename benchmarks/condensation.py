@@ -7,7 +7,7 @@ import numpy as np
 
 from partialslip import load_scene, plan
 from partialslip.result import Clock
-from partialslip.threads import one_thread
+from partialslip.tools.threads import one_thread
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import body

@@ -21,15 +21,15 @@ from estimates import OverTime, limited, shaped
 
 import partialslip
 from partialslip import Result, Scene
-from partialslip.errors import InputError
 from partialslip.friction import history, limit
 from partialslip.halfplane import contact
 from partialslip.halfplane.steady import transition
 from partialslip.halfplane.turning import half_cycle
-from partialslip.judge import compare
-from partialslip.judge.means import norm_errors
+from partialslip.run.judge import compare
+from partialslip.run.judge.means import norm_errors
 from partialslip.scene.reading import parse_scene
-from partialslip.threads import one_thread
+from partialslip.tools.errors import InputError
+from partialslip.tools.threads import one_thread
 
 MANY = 200  # cycles asked for: they end where nothing but rounding changes
 KINDS = ("hertz", "flat-rounded", "x^4", "f(x)", "hertz", "tabulated", "f(x)")

@@ -18,11 +18,11 @@ import numpy as np
 
 import partialslip
 from partialslip import Scene
-from partialslip.errors import InputError
 from partialslip.friction import steps
 from partialslip.friction.history import History
 from partialslip.march import driver, unlike
 from partialslip.scene.reading import parse_scene
+from partialslip.tools.errors import InputError
 from partialslip_fem import result, solving
 
 MANY, OF_COUPLED = 64, 32

@@ -28,18 +28,18 @@ from msgspec.structs import replace
 
 import partialslip
 from partialslip import Result, Scene
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path.gradual_mean_bound import gradual_mean_load_bound
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.steady import steady_stick_zone, transition
-from partialslip.judge import compare
-from partialslip.judge.means import norm_errors
+from partialslip.run.judge import compare
+from partialslip.run.judge.means import norm_errors
+from partialslip.scene.gradual import turns_round
 from partialslip.scene.reading import parse_scene
-from partialslip.threads import one_thread
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+from partialslip.tools.threads import one_thread
 
 KEYS = ("a", "left", "right", "m", "n", "p", "q", "q1", "q2")
 KINDS = (

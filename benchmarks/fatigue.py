@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 
-from partialslip.fatigue import (
+from partialslip.study.fatigue import (
     crossland,
     dang_van,
     fatemi_socie,
@@ -14,7 +14,7 @@ from partialslip.fatigue import (
     smith_watson_topper,
     with_zz,
 )
-from partialslip.fatigue.planes import ANGLES, TILTS
+from partialslip.study.fatigue.planes import ANGLES, TILTS
 
 E, NU = 72.1e9, 0.33
 CRITERIA = {

@@ -8,11 +8,11 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-import partialslip.benchmark
-from partialslip.benchmark.freeze import covering, frozen_parts
-from partialslip.benchmark.problem import Target, frozen_text, parse_problem, read_frozen, texts
+import partialslip.verify.benchmark
+from partialslip.verify.benchmark.freeze import covering, frozen_parts
+from partialslip.verify.benchmark.problem import Target, frozen_text, parse_problem, read_frozen, texts
 
-PATH = Path(partialslip.benchmark.__file__).parent / "targets.json"
+PATH = Path(partialslip.verify.benchmark.__file__).parent / "targets.json"
 
 
 def main(numbers: list[str]) -> None:

@@ -28,13 +28,13 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.optimize import brentq
 
-from partialslip.arrays import Array
-from partialslip.gradual import turns_round
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, LostError, steady
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.gradual_table import PLACE, tabled
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import steady_stick_zone, stick_zones
+from partialslip.scene.gradual import turns_round
+from partialslip.tools.arrays import Array
 
 HERTZ = HertzShape()
 CYCLES, STEADY = 8, 1e-8  # half cycles from a neighbour, and the last change: changes fall faster than tenfold

@@ -8,7 +8,6 @@ import time
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.friction.coulomb_constant_pressure import march
 from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
@@ -21,7 +20,8 @@ from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.march.cells import compliance, forces, graded_cells
 from partialslip.result import StickZone
-from partialslip.threads import one_thread
+from partialslip.tools.arrays import Array
+from partialslip.tools.threads import one_thread
 
 P0 = 2 / np.pi  # a = P = 1
 

@@ -1,7 +1,7 @@
 """Are the tests of the judge worth anything? Change one operator, number or condition of a module at a time, and see
 whether a test fails.
 
-    python benchmarks/mutations.py src/partialslip/judge/*.py --tests tests/judge/test_verdicts.py
+    python benchmarks/mutations.py src/partialslip/run/judge/*.py --tests tests/judge/test_verdicts.py
     python benchmarks/mutations.py src/partialslip/verify/case.py --tests tests/verify/test_requirements.py
 
 What survives is printed, with its line; tests must then say more, or the change makes no difference. mutmut and

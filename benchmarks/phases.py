@@ -22,10 +22,10 @@ from cvxopt import cholmod
 from scipy import sparse
 
 from partialslip import load_scene, plan
-from partialslip.convergence import power
-from partialslip.output.svg import svg
 from partialslip.result import Clock
-from partialslip.threads import one_thread
+from partialslip.tools.convergence import power
+from partialslip.tools.output.svg import svg
+from partialslip.tools.threads import one_thread
 from partialslip_fem import factor
 from partialslip_fem.elasticity import body
 from partialslip_fem.mesh_solution import Adapted

@@ -13,15 +13,15 @@ import subprocess
 import sys
 from pathlib import Path
 
-from partialslip.origin import made_now
+from partialslip.tools.origin import made_now
 
 FILE = Path(__file__).parent / "start.json"
 CODES = {"exact": "exact", "march": "march", "fem": "fem-1e-3", "equivalent": "equivalent"}  # by method
 PROBLEM = {"equivalent": "PS-23"}  # others: PS-02
 PROCESS = """
 import sys, time
-from partialslip.benchmark import read_problems
-from partialslip.benchmark.codes import CODES
+from partialslip.verify.benchmark import read_problems
+from partialslip.verify.benchmark.codes import CODES
 code, scene = CODES[sys.argv[1]], read_problems()[sys.argv[2]].scene
 ends = [0.0]
 for _ in range(3):

@@ -19,17 +19,17 @@ import numpy as np
 
 import partialslip
 from partialslip import Result, Scene
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.gradual import turns_round
+from partialslip.codes.score import _read_as
+from partialslip.codes.score.kinds import KINDS
+from partialslip.codes.score.method import scored
+from partialslip.codes.score.samples import samples
 from partialslip.halfplane import contact
 from partialslip.halfplane.steady import steady_stick_zone, transition
-from partialslip.judge.means import cell_means, means
 from partialslip.march.cells import compliance, forces, graded_cells
-from partialslip.score import _read_as
-from partialslip.score.kinds import KINDS
-from partialslip.score.method import scored
-from partialslip.score.samples import samples
+from partialslip.run.judge.means import cell_means, means
+from partialslip.scene.gradual import turns_round
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 COUNTS = (61, 151, 401)
 REGIMES = ("shear", "small tension", "large tension", "flat-rounded", "f(x)", "reversal")
@@ -173,7 +173,7 @@ def _penalty(of: Drawn, share: float) -> Callable[[Array], Array]:
 def _stretch(scene: Scene, x: Array, a: float) -> Array:
     """Displacement by the change of tension at the cells ``x`` (n,), in a, as slip over A P."""
     from partialslip.friction.load_path import load_path
-    from partialslip.plan import plan
+    from partialslip.scene.plan import plan
 
     path = load_path(scene, plan(scene))
     assert path is not None

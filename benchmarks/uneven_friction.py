@@ -22,8 +22,8 @@ import numpy as np
 
 import partialslip
 from partialslip import Allowance
-from partialslip.errors import InputError
 from partialslip.halfplane import contact
+from partialslip.tools.errors import InputError
 
 NARROW, WIDE = -4.0, -0.5  # powers of 10 of the widths of features, in a
 OFF = 1e-6  # |q| beyond the bound that is none, f p0

@@ -16,13 +16,13 @@ from collections import Counter
 import numpy as np
 
 from partialslip import load_scene, run
-from partialslip.errors import InputError
-from partialslip.judge import Outcome
-from partialslip.judge.reference import reference
-from partialslip.plan import plan
 from partialslip.result import Result
 from partialslip.run import Run, compared
+from partialslip.run.judge import Outcome
+from partialslip.run.judge.reference import reference
 from partialslip.scene import Scene
+from partialslip.scene.plan import plan
+from partialslip.tools.errors import InputError
 from partialslip.verify.random_scenes import draw
 
 _ACCURACY = 1e-2

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import grimp
 
-from partialslip.output.svg import svg
+from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

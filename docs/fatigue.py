@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import partialslip
-from partialslip.arrays import Array
-from partialslip.fatigue import edges, fatemi_socie, smith_watson_topper, with_zz
-from partialslip.output.svg import svg
 from partialslip.result import Result
 from partialslip.scene import Scene
+from partialslip.study.fatigue import edges, fatemi_socie, smith_watson_topper, with_zz
+from partialslip.tools.arrays import Array
+from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from partialslip.gradual import turns_round
 from partialslip.halfplane import Contact, adhered, hysteresis, one_step_zone
 from partialslip.halfplane import stick_zone as stick_zone_under
 from partialslip.halfplane.gradual_table import parted, tabled
@@ -14,9 +13,10 @@ from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
-from partialslip.map.figure import ends_svg
-from partialslip.map.grid import stick_map
-from partialslip.output.svg import svg
+from partialslip.scene.gradual import turns_round
+from partialslip.study.map.figure import ends_svg
+from partialslip.study.map.grid import stick_map
+from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

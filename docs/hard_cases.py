@@ -11,9 +11,9 @@ from textwrap import fill
 
 import numpy as np
 
-from partialslip.groups import grouped
 from partialslip.halfplane import contact
 from partialslip.scene import Fem, Scene
+from partialslip.tools.groups import grouped
 from partialslip.verify import FAMILIES
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.catalogue import catalogue_page

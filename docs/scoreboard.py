@@ -10,13 +10,21 @@ from typing import Any
 
 import numpy as np
 
-from partialslip.benchmark import Answer, Problem, Submission, read_problems, read_submission, scoreboard, standing
-from partialslip.benchmark.codes import CODES, Own
-from partialslip.benchmark.grade import Mark, best_grade, graded
-from partialslip.benchmark.measured import GROUPS
-from partialslip.benchmark.problem import EDITION
 from partialslip.halfplane import contact
 from partialslip.halfplane.turning import half_cycle
+from partialslip.verify.benchmark import (
+    Answer,
+    Problem,
+    Submission,
+    read_problems,
+    read_submission,
+    scoreboard,
+    standing,
+)
+from partialslip.verify.benchmark.codes import CODES, Own
+from partialslip.verify.benchmark.grade import Mark, best_grade, graded
+from partialslip.verify.benchmark.measured import GROUPS
+from partialslip.verify.benchmark.problem import EDITION
 
 DOCS = Path(__file__).parent
 SUBMISSIONS = DOCS.parent / "benchmarks" / "submissions"

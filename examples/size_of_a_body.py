@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 import partialslip
-from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import workers
+from partialslip.study.batch.ledger import Ledger
+from partialslip.study.batch.sweep import workers
 from partialslip.study.size import sizes
 from partialslip.study.size.axes import axis
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from partialslip.convergence import extrapolated, fitted_order, grid_convergence_index, power
+from partialslip.tools.convergence import extrapolated, fitted_order, grid_convergence_index, power
 
 
 def values(order, ratio, count=3):

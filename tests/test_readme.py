@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from partialslip.cli import main
-from partialslip.output import page
 from partialslip.scene.reading import parse_scene
+from partialslip.tools.output import page
 from partialslip_meshes.gmsh import DEBIAN_PACKAGES
 
 ROOT = Path(__file__).parents[1]

@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import partialslip
 from partialslip.halfplane.cauchy import Cauchy
-from partialslip.threads import one_thread
+from partialslip.tools.threads import one_thread
 from partialslip_fem import Kept
 from partialslip_meshes.files import quiet
 
@@ -77,7 +77,7 @@ def test_as_one_after_the_other(alone, threads, times):
 LATE = """
 from threadpoolctl import threadpool_info, threadpool_limits
 import numpy
-from partialslip.threads import one_thread
+from partialslip.tools.threads import one_thread
 
 def threads():
     return {each["num_threads"] for each in threadpool_info() if "scipy" in each["prefix"]}

@@ -12,8 +12,8 @@ from itertools import product
 from statistics import median
 
 from partialslip import load_scene, plan, run
-from partialslip.judge import compare
-from partialslip.threads import one_thread
+from partialslip.run.judge import compare
+from partialslip.tools.threads import one_thread
 from partialslip_fem.method import solve_meshed
 from partialslip_meshes import block
 

@@ -1,6 +1,6 @@
 """Codes on PS-27, where slip turns round, with 1, 8 and 64 increments per half cycle: increments.py [CODE ...].
 
-The adapters of the benchmark (partialslip.benchmark.codes) solve. Appends a line of JSON for every run to
+The adapters of the benchmark (partialslip.verify.benchmark.codes) solve. Appends a line of JSON for every run to
 increments.jsonl, of which docs/scoreboard.py makes a table: code, version, settings, increments (null: as the code
 chooses); m and n in a as partialslip score reads them, which takes the friction bound to be met like a square root;
 m_drift, m in a where it is met like (x + m)^(3/2); room, 1 - s dq/(2 f p) at x = -0.8 a, s being the sign of the
@@ -14,16 +14,16 @@ from pathlib import Path
 
 import numpy as np
 
-from partialslip.benchmark import Problem, read_problems
-from partialslip.benchmark.codes import Code
-from partialslip.benchmark.codes.calculix import Calculix
-from partialslip.benchmark.codes.getfem import GetFEM
-from partialslip.benchmark.codes.kratos import Kratos
-from partialslip.benchmark.codes.opensees import OpenSees
-from partialslip.benchmark.codes.own import Own
-from partialslip.benchmark.measured import answer_of
-from partialslip.errors import one_line
 from partialslip.result import Result
+from partialslip.tools.errors import one_line
+from partialslip.verify.benchmark import Problem, read_problems
+from partialslip.verify.benchmark.codes import Code
+from partialslip.verify.benchmark.codes.calculix import Calculix
+from partialslip.verify.benchmark.codes.getfem import GetFEM
+from partialslip.verify.benchmark.codes.kratos import Kratos
+from partialslip.verify.benchmark.codes.opensees import OpenSees
+from partialslip.verify.benchmark.codes.own import Own
+from partialslip.verify.benchmark.measured import answer_of
 
 OUT = Path(__file__).parent / "increments.jsonl"
 PROBLEM = "PS-27"

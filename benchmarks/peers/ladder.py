@@ -1,6 +1,6 @@
 """Other codes on the same scenes, over a ladder of meshes: ladder.py calculix|getfem|kratos [SCENE ...].
 
-The adapters of the benchmark (partialslip.benchmark.codes) solve. Appends a line of JSON for every run to --out: scene,
+The adapters of the benchmark (partialslip.verify.benchmark.codes) solve. Appends a line of JSON for every run to --out: scene,
 method, setting, element_size (in a; at the ends of the zones, where the mesh is graded to them), dofs, errors of a, m,
 n, p and q against the exact solution, CPU seconds of the processes, wall seconds, peak memory. Graded meshes are
 refined at the ends that the code's own run before gave; here the cost of that run counts. What is there already is not
@@ -13,10 +13,10 @@ import time
 from pathlib import Path
 
 from partialslip import load_scene, run
-from partialslip.benchmark.codes.calculix import Calculix
-from partialslip.benchmark.codes.getfem import GetFEM
-from partialslip.benchmark.codes.kratos import Kratos
-from partialslip.judge import compare
+from partialslip.run.judge import compare
+from partialslip.verify.benchmark.codes.calculix import Calculix
+from partialslip.verify.benchmark.codes.getfem import GetFEM
+from partialslip.verify.benchmark.codes.kratos import Kratos
 
 SCENES = ("hertz-small-tension", "hertz-large-tension")
 SIZES = (0.1, 0.05, 0.025, 0.0125)

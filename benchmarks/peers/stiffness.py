@@ -14,15 +14,15 @@ import tempfile
 from pathlib import Path
 
 from partialslip import load_scene, run
-from partialslip.benchmark.codes.calculix import Calculix
-from partialslip.benchmark.codes.getfem import GetFEM
-from partialslip.benchmark.codes.process import CodeOutcome, ran
-from partialslip.benchmark.neutral import GROWTH, STIFFER
-from partialslip.errors import InputError
-from partialslip.export import export
-from partialslip.judge import compare
-from partialslip.score.method import scored
-from partialslip.score.read import read_tractions
+from partialslip.codes.export import export
+from partialslip.codes.score.method import scored
+from partialslip.codes.score.read import read_tractions
+from partialslip.run.judge import compare
+from partialslip.tools.errors import InputError
+from partialslip.verify.benchmark.codes.calculix import Calculix
+from partialslip.verify.benchmark.codes.getfem import GetFEM
+from partialslip.verify.benchmark.codes.process import CodeOutcome, ran
+from partialslip.verify.benchmark.neutral import GROWTH, STIFFER
 
 SCENES = ("hertz-small-tension", "hertz-large-tension")
 KEYS = ("a", "m", "n", "p", "q")

@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.bars import BARS
-from partialslip.errors import InputError
 from partialslip.friction.coulomb_coupled import HALF
 from partialslip.friction.history import History
 from partialslip.friction.step_errors import more_steps, steps_matter
 from partialslip.friction.zone_ends import apart
 from partialslip.result import Clock, Pace
+from partialslip.tools.arrays import Array
+from partialslip.tools.bars import BARS
+from partialslip.tools.errors import InputError
 from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
@@ -64,7 +64,7 @@ def adapt(
     ----------
     problem : Problem
     accuracy : float
-        In contact half-widths for ends; tractions have bars in proportion (:data:`partialslip.bars.BARS`).
+        In contact half-widths for ends; tractions have bars in proportion (:data:`partialslip.tools.bars.BARS`).
     width : float
         Half-width of blocks that stand for half-planes, in contact half-widths.
     clock : Clock

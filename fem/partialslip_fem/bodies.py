@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices, submatrix
-from partialslip.errors import InputError
 from partialslip.friction.active_set import Factored, Sides, Solution
 from partialslip.friction.coupled_step import Relative
 from partialslip.friction.normal import press
 from partialslip.result import Clock
+from partialslip.tools.arrays import Array, Indices, submatrix
+from partialslip.tools.errors import InputError
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import body

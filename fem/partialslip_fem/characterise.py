@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.rig import Rig, Terms, key_of
+from partialslip.result.rig import Rig, Terms, key_of
 from partialslip.scene import Scene
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 from partialslip_fem.elasticity import triangles_of
 from partialslip_fem.factor import Backend, default_backend
 from partialslip_fem.problem import Part, parts_of

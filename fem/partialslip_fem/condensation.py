@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.tools.arrays import Array
 from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.factor import Backend, Factor, Held, factor
 from partialslip_fem.farfield import FarField

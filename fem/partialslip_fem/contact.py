@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.friction.coupled_step import Relative
+from partialslip.tools.arrays import Array
 from partialslip_fem.condensation import Condensation
 from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.mortar import transfer

@@ -9,7 +9,7 @@ corners of plates in extension, J. Appl. Mech. 19 (1952) 526-528.
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.tools.arrays import Array
 
 _LEAST, _COUNT = 0.2, 4001  # accuracy: smallest exponent tried, and number of exponents tried up to 1
 

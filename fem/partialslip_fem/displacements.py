@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array
+from partialslip.tools.arrays import Array
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import transfer

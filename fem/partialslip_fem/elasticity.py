@@ -9,7 +9,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 import skfem
 
-from partialslip.arrays import Array, Indices
+from partialslip.tools.arrays import Array, Indices
 from partialslip_fem.elements import ELEMENTS, shapes
 from partialslip_meshes import Mesh
 

@@ -8,7 +8,7 @@ import skfem
 from numpy.polynomial import Legendre, Polynomial
 from skfem.refdom import RefTri
 
-from partialslip.arrays import Array
+from partialslip.tools.arrays import Array
 
 _EVEN = 4  # fixed: highest order with evenly spaced nodes on the edges
 

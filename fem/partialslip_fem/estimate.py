@@ -34,9 +34,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array, Mask
-from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.result import Clock
+from partialslip.tools.arrays import Array, Mask
+from partialslip.tools.bars import BARS, LEAST_SHEAR
 from partialslip_fem.locked import locked_in
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import within_cells

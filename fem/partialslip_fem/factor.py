@@ -15,8 +15,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from partialslip.arrays import Array, Indices
-from partialslip.errors import MissingLibraryError
+from partialslip.tools.arrays import Array, Indices
+from partialslip.tools.errors import MissingLibraryError
 
 Backend = Literal["superlu", "cholmod"]
 _options = threading.Lock()  # CHOLMOD's options are one dictionary for all threads

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.tools.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array
 from partialslip.result import DeformedBody, SurfaceStress
+from partialslip.tools.arrays import Array
 from partialslip_fem.displacements import DisplacedBody
 from partialslip_fem.elasticity import gradients
 from partialslip_fem.mesh_solution import MeshSolution

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from partialslip.errors import InputError
 from partialslip.friction.coulomb_coupled import SlidesError
 from partialslip.result import Clock
+from partialslip.tools.errors import InputError
 from partialslip_fem import solving
 from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.mesh_solution import MeshSolution

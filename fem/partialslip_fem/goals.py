@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.bars import BARS
+from partialslip.tools.arrays import Array
+from partialslip.tools.bars import BARS
 from partialslip_fem import estimate
 from partialslip_fem.bodies import Grading
 from partialslip_fem.mesh_solution import MeshSolution

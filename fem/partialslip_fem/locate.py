@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from partialslip.arrays import Array, Indices
+from partialslip.tools.arrays import Array, Indices
 
 _STARTS = 6  # cost: nearest triangles from which the way to a point is tried
 _STEPS = 1000  # limit: triangles on a way

@@ -28,7 +28,7 @@ than the sum, with signs, of what the difference of two solutions moves it by.
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices
+from partialslip.tools.arrays import Array, Indices
 from partialslip_fem.mesh_solution import MeshSolution
 
 # accuracy: errors of the ends, in what follows from the difference of the slip in two solutions; and factors of

@@ -7,13 +7,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array, Indices
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import StickInterval
+from partialslip.tools.arrays import Array, Indices
 from partialslip_fem.contact import CondensedBody
 from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.recovery import traction

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from partialslip.allowance import Allowance
-from partialslip.errors import InputError
-from partialslip.plan import Plan
 from partialslip.result import Clock, Result
 from partialslip.result.state import State
 from partialslip.scene import WIDTHS, Scene
-from partialslip.threads import one_thread
+from partialslip.scene.plan import Plan
+from partialslip.tools.allowance import Allowance
+from partialslip.tools.errors import InputError
+from partialslip.tools.threads import one_thread
 from partialslip_fem.adapt import adapt
 from partialslip_fem.bodies import Kept
 from partialslip_fem.mesh_solution import Adapted

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array, Indices
+from partialslip.tools.arrays import Array, Indices
 from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.elements import shapes
 from partialslip_fem.recovery import inside_elements

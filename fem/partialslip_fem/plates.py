@@ -6,12 +6,12 @@ from contextlib import suppress
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices, submatrix
-from partialslip.errors import PartialslipError
 from partialslip.friction.coupled_step import Relative
 from partialslip.friction.load_path import stretched
 from partialslip.friction.path_following import Bounds, Follower
 from partialslip.result.plates import Plates
+from partialslip.tools.arrays import Array, Indices, submatrix
+from partialslip.tools.errors import PartialslipError
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import projected
 from partialslip_fem.problem import ScaledProblem

@@ -13,13 +13,13 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array
 from partialslip.friction.even_gap import EvenGap, even_gap
 from partialslip.friction.load_path import Path, load_path, lower_strain, scaled_pressing
-from partialslip.plan import Plan
 from partialslip.result.state import State
 from partialslip.scene import Friction, Profile, Scene
 from partialslip.scene.bodies import Body
+from partialslip.scene.plan import Plan
+from partialslip.tools.arrays import Array
 from partialslip_fem.corners import free_exponent, held_exponent, size
 from partialslip_fem.elasticity import ALL_AROUND, HeldSides
 from partialslip_fem.factor import Backend, default_backend

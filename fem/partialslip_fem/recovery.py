@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array
 from partialslip.result import TractionAt
+from partialslip.tools.arrays import Array
 from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.elements import nodes_of
 

@@ -13,7 +13,7 @@ import skfem
 from numpy.polynomial import chebyshev
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array, Indices
+from partialslip.tools.arrays import Array, Indices
 from partialslip_fem.bodies import Grading, block_of
 from partialslip_fem.elasticity import triangles_of
 from partialslip_fem.elements import ELEMENTS

@@ -5,18 +5,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.friction.history import History, certificate, last_cycle_change
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import doubts, steady_state, steps_of_coupled
 from partialslip.friction.restart import begun, end_state
 from partialslip.friction.step_errors import summed
 from partialslip.friction.work import work, work_error
-from partialslip.plan import Plan
 from partialslip.result import Clock, Result, Slip, StressAt, Traction
 from partialslip.result.plates import Plates
 from partialslip.result.state import State
 from partialslip.scene import Scene
+from partialslip.scene.plan import Plan
+from partialslip.tools.arrays import Array
 from partialslip_fem.displacements import displace_bodies
 from partialslip_fem.estimate import rounding_error
 from partialslip_fem.fields import along_surfaces, deformed, edges_near_contact

@@ -6,8 +6,6 @@ from functools import partial
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices
-from partialslip.bars import BARS
 from partialslip.friction import coulomb_constant_pressure, coulomb_coupled, coulomb_varying_pressure, step_errors
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import Pivot, Relative
@@ -21,6 +19,8 @@ from partialslip.friction.warm_start import Trail
 from partialslip.friction.work import told_by_finer
 from partialslip.friction.zone_ends import NEAREST, VERTICES, within
 from partialslip.result import Clock
+from partialslip.tools.arrays import Array, Indices
+from partialslip.tools.bars import BARS
 from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
 from partialslip_fem.elasticity import DiscreteBody

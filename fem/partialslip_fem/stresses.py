@@ -6,12 +6,12 @@ from functools import cached_property
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.arrays import Array
-from partialslip.friction.below import under_pressure, under_shear, under_tension
 from partialslip.friction.load_path import lower_strain
-from partialslip.friction.phases import Phases
-from partialslip.friction.piecewise import PiecewiseCauchy
+from partialslip.result.below import under_pressure, under_shear, under_tension
+from partialslip.result.phases import Phases
+from partialslip.result.piecewise import PiecewiseCauchy
 from partialslip.scene import Scene
+from partialslip.tools.arrays import Array
 from partialslip_fem.factor import default_backend
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.problem import Part, ScaledProblem, parts_of
@@ -58,7 +58,7 @@ class Line:
 
 @dataclass(frozen=True)
 class BodyStresses:
-    """Stresses at load steps and between them (:class:`partialslip.friction.phases.Phases`).
+    """Stresses at load steps and between them (:class:`partialslip.result.phases.Phases`).
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 import skfem
 
-from partialslip.arrays import Array, Complex
+from partialslip.tools.arrays import Array, Complex
 from partialslip_fem.bodies import Grading, block_of
 from partialslip_fem.elasticity import DiscreteBody, body, facets_of, triangles_of
 from partialslip_fem.elements import ELEMENTS

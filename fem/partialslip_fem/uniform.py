@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from partialslip.errors import InputError
 from partialslip.result import Clock
+from partialslip.tools.errors import InputError
 from partialslip_fem import solving
 from partialslip_fem.bodies import Grading, Kept
 from partialslip_fem.first_mesh import contact_line_limit, solve_on_first_mesh, too_narrow, widened

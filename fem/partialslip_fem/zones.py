@@ -4,11 +4,11 @@ from functools import partial
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices
 from partialslip.friction import zone_ends
 from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone
+from partialslip.tools.arrays import Array, Indices
 from partialslip_fem.elasticity import DiscreteBody
 from partialslip_fem.problem import ScaledProblem
 from partialslip_fem.recovery import traction

@@ -11,8 +11,8 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
-from partialslip.errors import InputError
-from partialslip.inputfile import LARGEST_MESH, opened
+from partialslip.tools.errors import InputError
+from partialslip.tools.inputfile import LARGEST_MESH, opened
 
 _one = threading.Lock()  # sys.stdout, sys.stderr and the warning filters are shared by all threads
 _INCLUDES = re.compile(rb"^\*\s*INCLUDE\b[^\n]*=([^\n]*)", re.IGNORECASE | re.MULTILINE)  # Abaqus

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
 
-from partialslip.errors import MissingLibraryError, PartialslipError
+from partialslip.tools.errors import MissingLibraryError, PartialslipError
 from partialslip_meshes.mesher import receive, send
 
 # System libraries that the gmsh wheel needs, and their Debian packages.

@@ -6,7 +6,7 @@ import meshio
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.errors import InputError
+from partialslip.tools.errors import InputError
 from partialslip_meshes.files import check_files, quiet
 
 # Suffixes of meshio's formats with point data. Readers of other formats may not terminate.

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.errors import InputError, MissingLibraryError
-from partialslip.inputfile import LARGEST_MESH, read_bytes
+from partialslip.tools.errors import InputError, MissingLibraryError
+from partialslip.tools.inputfile import LARGEST_MESH, read_bytes
 from partialslip_meshes import deck
 from partialslip_meshes.files import check_files, quiet
 from partialslip_meshes.mesh import Mesh

@@ -39,71 +39,71 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from partialslip.allowance import Allowance as Allowance
-    from partialslip.batch.grid import sweep as sweep
-    from partialslip.errors import InputError as InputError
-    from partialslip.errors import PartialslipError as PartialslipError
-    from partialslip.export import export as export
-    from partialslip.fatigue import Assessment as Assessment
-    from partialslip.fatigue import assess as assess
-    from partialslip.judge import Comparison as Comparison
-    from partialslip.judge import Outcome as Outcome
-    from partialslip.judge import Verdict as Verdict
-    from partialslip.judge import compare as compare
-    from partialslip.plan import Plan as Plan
-    from partialslip.plan import plan as plan
-    from partialslip.record import Record as Record
-    from partialslip.record import load_result as load_result
+    from partialslip.codes.export import export as export
+    from partialslip.codes.score import score as score
+    from partialslip.report.record import Record as Record
+    from partialslip.report.record import load_result as load_result
     from partialslip.result import Result as Result
     from partialslip.result import Slip as Slip
     from partialslip.result import Traction as Traction
+    from partialslip.result.rig import load_rig as load_rig
     from partialslip.result.state import State as State
     from partialslip.result.state import load_state as load_state
-    from partialslip.rig import load_rig as load_rig
     from partialslip.run import Run as Run
     from partialslip.run import characterise as characterise
     from partialslip.run import run as run
+    from partialslip.run.judge import Comparison as Comparison
+    from partialslip.run.judge import Outcome as Outcome
+    from partialslip.run.judge import Verdict as Verdict
+    from partialslip.run.judge import compare as compare
     from partialslip.scene import Scene as Scene
     from partialslip.scene.measured import refitted as refitted
+    from partialslip.scene.plan import Plan as Plan
+    from partialslip.scene.plan import plan as plan
     from partialslip.scene.reading import load_scene as load_scene
     from partialslip.scene.reading import parse_scene as parse_scene
     from partialslip.scene.reading import shipped_scenes as shipped_scenes
-    from partialslip.score import score as score
+    from partialslip.study.batch.grid import sweep as sweep
+    from partialslip.study.fatigue import Assessment as Assessment
+    from partialslip.study.fatigue import assess as assess
+    from partialslip.tools.allowance import Allowance as Allowance
+    from partialslip.tools.errors import InputError as InputError
+    from partialslip.tools.errors import PartialslipError as PartialslipError
 
     __version__: str
 
 # Where each name is defined: modules are imported when a name is used first, so that the command line starts fast.
 _HOMES = {
-    "Allowance": "allowance",
-    "Assessment": "fatigue",
-    "Comparison": "judge",
-    "InputError": "errors",
-    "Outcome": "judge",
-    "PartialslipError": "errors",
-    "Plan": "plan",
-    "Record": "record",
+    "Allowance": "tools.allowance",
+    "Assessment": "study.fatigue",
+    "Comparison": "run.judge",
+    "InputError": "tools.errors",
+    "Outcome": "run.judge",
+    "PartialslipError": "tools.errors",
+    "Plan": "scene.plan",
+    "Record": "report.record",
     "Result": "result",
     "Run": "run",
     "Scene": "scene",
     "Slip": "result",
     "State": "result.state",
     "Traction": "result",
-    "Verdict": "judge",
-    "assess": "fatigue",
+    "Verdict": "run.judge",
+    "assess": "study.fatigue",
     "characterise": "run",
-    "compare": "judge",
-    "export": "export",
-    "load_result": "record",
-    "load_rig": "rig",
+    "compare": "run.judge",
+    "export": "codes.export",
+    "load_result": "report.record",
+    "load_rig": "result.rig",
     "load_scene": "scene.reading",
     "load_state": "result.state",
     "parse_scene": "scene.reading",
-    "plan": "plan",
+    "plan": "scene.plan",
     "refitted": "scene.measured",
     "run": "run",
-    "score": "score",
+    "score": "codes.score",
     "shipped_scenes": "scene.reading",
-    "sweep": "batch.grid",
+    "sweep": "study.batch.grid",
 }
 __all__ = [*_HOMES]
 _SHOWN = [*__all__, "__version__", "halfplane"]

@@ -9,10 +9,10 @@ import pytest
 from refusing import line_of
 
 from partialslip import InputError, load_result, load_rig
-from partialslip.batch.ledger import Ledger, _sealed
-from partialslip.benchmark import read_problems, read_submission
-from partialslip.strictjson import decoded, parsed
+from partialslip.study.batch.ledger import Ledger, _sealed
 from partialslip.study.cost.ladder import read_peers
+from partialslip.tools.strictjson import decoded, parsed
+from partialslip.verify.benchmark import read_problems, read_submission
 from partialslip.verify.verdicts import was_finished
 
 

@@ -11,10 +11,10 @@ from refusing import line_of
 from tests.bad_input.conftest import check
 
 from partialslip import InputError, load_result, load_rig, load_scene, load_state, sweep
-from partialslip.batch.ledger import Ledger
-from partialslip.benchmark import read_problems, read_submission
 from partialslip.cli import main
 from partialslip.scene.measured import read_points
+from partialslip.study.batch.ledger import Ledger
+from partialslip.verify.benchmark import read_problems, read_submission
 from partialslip.verify.document import read_study
 from partialslip_meshes import read as read_mesh
 from partialslip_meshes.pointdata import read_point_data
@@ -156,7 +156,7 @@ OPENERS = {
 
 
 def test_no_other_module_opens_files_of_users():
-    """A module that begins to open files belongs to the list with a reason, or uses partialslip.inputfile."""
+    """A module that begins to open files belongs to the list with a reason, or uses partialslip.tools.inputfile."""
     found = set()
     for root in ("src", "fem", "meshes"):
         for path in (Path(__file__).parents[2] / root).rglob("*.py"):

@@ -10,10 +10,10 @@ import time
 import pytest
 
 import partialslip
-from partialslip.batch.cluster import _silence
-from partialslip.batch.job import Job
-from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import work_through, workers
+from partialslip.study.batch.cluster import _silence
+from partialslip.study.batch.job import Job
+from partialslip.study.batch.ledger import Ledger
+from partialslip.study.batch.sweep import work_through, workers
 
 
 @pytest.mark.slow
@@ -80,9 +80,9 @@ import sys
 from pathlib import Path
 from partialslip import load_scene
 from partialslip.cli.ending import ended
-from partialslip.batch.job import Job
-from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import work_through, workers
+from partialslip.study.batch.job import Job
+from partialslip.study.batch.ledger import Ledger
+from partialslip.study.batch.sweep import work_through, workers
 def main():
     tasks = [Job(load_scene("hertz-shear"), ("exact",), {"number": n}).task for n in range(int(sys.argv[3]))]
     with workers(sys.argv[1]) as executor:

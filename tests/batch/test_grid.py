@@ -10,8 +10,8 @@ import pytest
 from refusing import line_of
 
 import partialslip
-from partialslip.batch import grid, job
-from partialslip.batch.ledger import Ledger
+from partialslip.study.batch import grid, job
+from partialslip.study.batch.ledger import Ledger
 from partialslip_fem import characterise
 
 SCENE = partialslip.load_scene("fretting-aluminium")

@@ -14,10 +14,10 @@ from refusing import line_of
 
 import partialslip
 from partialslip import origin
-from partialslip.batch import ledger as module
-from partialslip.batch.job import Job
-from partialslip.batch.ledger import Ledger, scene_content
-from partialslip.origin import checksum_of, source_checksum
+from partialslip.study.batch import ledger as module
+from partialslip.study.batch.job import Job
+from partialslip.study.batch.ledger import Ledger, scene_content
+from partialslip.tools.origin import checksum_of, source_checksum
 
 
 def test_entries_are_there_again(tmp_path):
@@ -154,7 +154,7 @@ def test_a_killed_writer_leaves_whole_lines(tmp_path):
     """kill -9 while many entries are written: every line in the file is an entry, and the study can continue."""
     path = tmp_path / "ledger.jsonl"
     code = (
-        "import sys, itertools, pathlib\nfrom partialslip.batch.ledger import Ledger\n"
+        "import sys, itertools, pathlib\nfrom partialslip.study.batch.ledger import Ledger\n"
         "ledger = Ledger(pathlib.Path(sys.argv[1]))\n"
         "for n in itertools.count(): ledger.add(str(n), {'text': 'x' * 5000})\n"
     )

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from partialslip.benchmark.problem import read_frozen
+from partialslip.verify.benchmark.problem import read_frozen
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = ROOT / "benchmarks" / "peers" / "boundary.py"

@@ -6,20 +6,20 @@ import sys
 import numpy as np
 import pytest
 
-from partialslip.benchmark import graded, read_problems, read_submission, write_submission
-from partialslip.benchmark.codes import CODES, code_answers
-from partialslip.benchmark.codes.calculix import Calculix
-from partialslip.benchmark.codes.getfem import HOST as GETFEM
-from partialslip.benchmark.codes.getfem import GetFEM
-from partialslip.benchmark.codes.kratos import HOST as KRATOS
-from partialslip.benchmark.codes.kratos import Kratos
-from partialslip.benchmark.codes.opensees import HOST as OPENSEES
-from partialslip.benchmark.codes.opensees import OpenSees
-from partialslip.benchmark.codes.own import Own
-from partialslip.benchmark.codes.process import python_with
 from partialslip.cli import main
-from partialslip.errors import InputError, PartialslipError
 from partialslip.run import run
+from partialslip.tools.errors import InputError, PartialslipError
+from partialslip.verify.benchmark import graded, read_problems, read_submission, write_submission
+from partialslip.verify.benchmark.codes import CODES, code_answers
+from partialslip.verify.benchmark.codes.calculix import Calculix
+from partialslip.verify.benchmark.codes.getfem import HOST as GETFEM
+from partialslip.verify.benchmark.codes.getfem import GetFEM
+from partialslip.verify.benchmark.codes.kratos import HOST as KRATOS
+from partialslip.verify.benchmark.codes.kratos import Kratos
+from partialslip.verify.benchmark.codes.opensees import HOST as OPENSEES
+from partialslip.verify.benchmark.codes.opensees import OpenSees
+from partialslip.verify.benchmark.codes.own import Own
+from partialslip.verify.benchmark.codes.process import python_with
 
 PROBLEMS = read_problems()
 COARSE = {"getfem": GetFEM(0.3), "kratos": Kratos(0.3, 1), "opensees": OpenSees(0.3, 1)}

@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from partialslip.benchmark import Answer, Meta, Submission, read_problems
-from partialslip.benchmark.figure import _APART, _columns, errors_along, problem_svg
+from partialslip.verify.benchmark import Answer, Meta, Submission, read_problems
+from partialslip.verify.benchmark.figure import _APART, _columns, errors_along, problem_svg
 
 PROBLEM = read_problems()["PS-02"]
 EXACT = {key: target.value for key, target in PROBLEM.targets.items()}

@@ -3,7 +3,7 @@
 import msgspec
 import pytest
 
-from partialslip.benchmark import Answer, graded, read_problems
+from partialslip.verify.benchmark import Answer, graded, read_problems
 
 PROBLEM = read_problems()["PS-02"]
 

@@ -12,11 +12,11 @@ import pytest
 import tomli_w
 import yaml
 
-from partialslip.benchmark import handed_in, read_problems, read_submission, tables
-from partialslip.benchmark import handin as checks
-from partialslip.benchmark.tables import answer_from
 from partialslip.cli import main
 from partialslip.run import run
+from partialslip.verify.benchmark import handed_in, read_problems, read_submission, tables
+from partialslip.verify.benchmark import handin as checks
+from partialslip.verify.benchmark.tables import answer_from
 
 KNOWN = read_problems()
 PROBLEM = KNOWN["PS-02"]
@@ -346,7 +346,7 @@ def test_what_check_asks_for_is_enough_to_correct_a_folder(folder, capsys):
 
 def test_the_workflow_runs_commands_that_there_are(folder, capsys):
     assert folder.is_dir()
-    told = yaml.safe_load((files("partialslip.benchmark") / "grade.yml").read_text("utf-8"))
+    told = yaml.safe_load((files("partialslip.verify.benchmark") / "grade.yml").read_text("utf-8"))
     runs = [step["run"] for step in told["jobs"]["grade"]["steps"] if "run" in step]
     (command,) = (run.partition(" | ")[0] for run in runs if run.startswith("partialslip"))
     words = shlex.split(command.replace('"$ANSWERS"', "mine"))[1:]

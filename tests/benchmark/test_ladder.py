@@ -8,7 +8,8 @@ import xml.etree.ElementTree as ET
 import msgspec
 import pytest
 
-from partialslip.benchmark import (
+from partialslip.tools.errors import InputError
+from partialslip.verify.benchmark import (
     Answer,
     Meta,
     Rung,
@@ -20,8 +21,7 @@ from partialslip.benchmark import (
     read_submission,
     write_submission,
 )
-from partialslip.benchmark.codes import code_answers
-from partialslip.errors import InputError
+from partialslip.verify.benchmark.codes import code_answers
 
 PROBLEM = read_problems()["PS-02"]
 SIZES = (0.04, 0.02, 0.01)

@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from partialslip.benchmark import read_problems
-from partialslip.benchmark.neutral import files
+from partialslip.verify.benchmark import read_problems
+from partialslip.verify.benchmark.neutral import files
 from partialslip_meshes import read
 
 PROBLEMS = read_problems()

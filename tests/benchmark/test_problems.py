@@ -8,14 +8,14 @@ from closed import CLOSED, exact
 from msgspec.structs import replace
 
 from partialslip import load_scene, run
-from partialslip.benchmark import read_problems
-from partialslip.benchmark.freeze import covering, frozen_parts
-from partialslip.benchmark.measured import GROUPS, quantities
-from partialslip.benchmark.problem import EDITION, chosen_problems, problem_checksum, read_frozen, texts
-from partialslip.errors import InputError
-from partialslip.fatigue import hot_spots
 from partialslip.scene import Effects, Fatigue
 from partialslip.scene.reading import shipped_scenes
+from partialslip.study.fatigue import hot_spots
+from partialslip.tools.errors import InputError
+from partialslip.verify.benchmark import read_problems
+from partialslip.verify.benchmark.freeze import covering, frozen_parts
+from partialslip.verify.benchmark.measured import GROUPS, quantities
+from partialslip.verify.benchmark.problem import EDITION, chosen_problems, problem_checksum, read_frozen, texts
 
 PROBLEMS = read_problems()
 

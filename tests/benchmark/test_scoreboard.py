@@ -3,9 +3,9 @@
 import runpy
 from pathlib import Path
 
-from partialslip.benchmark import read_problems, read_submission
-from partialslip.benchmark.grade import best_grade
-from partialslip.benchmark.scoreboard import grades
+from partialslip.verify.benchmark import read_problems, read_submission
+from partialslip.verify.benchmark.grade import best_grade
+from partialslip.verify.benchmark.scoreboard import grades
 
 DOCS = Path(__file__).parents[2] / "docs"
 SCRIPT = runpy.run_path(str(DOCS / "scoreboard.py"))

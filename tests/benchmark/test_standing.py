@@ -8,7 +8,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from partialslip.benchmark import (
+from partialslip.cli import main
+from partialslip.tools.errors import InputError
+from partialslip.verify.benchmark import (
     Answer,
     Meta,
     Standing,
@@ -20,11 +22,9 @@ from partialslip.benchmark import (
     read_submission,
     standing,
 )
-from partialslip.benchmark.grade import HEADLINE, NOT_OFFERED
-from partialslip.benchmark.measured import GROUPS
-from partialslip.benchmark.scoreboard import _ORDER
-from partialslip.cli import main
-from partialslip.errors import InputError
+from partialslip.verify.benchmark.grade import HEADLINE, NOT_OFFERED
+from partialslip.verify.benchmark.measured import GROUPS
+from partialslip.verify.benchmark.scoreboard import _ORDER
 
 KNOWN = read_problems()
 SUBMISSIONS = Path(__file__).parents[2] / "benchmarks" / "submissions"

@@ -9,7 +9,13 @@ import msgspec
 import numpy as np
 import pytest
 
-from partialslip.benchmark import (
+from partialslip.cli import main
+from partialslip.run import run
+from partialslip.tools.errors import InputError
+from partialslip.tools.origin import made_now
+from partialslip.tools.output.files import json_text
+from partialslip.tools.output.lock import locked
+from partialslip.verify.benchmark import (
     Answer,
     Meta,
     Submission,
@@ -19,17 +25,11 @@ from partialslip.benchmark import (
     scoreboard,
     write_submission,
 )
-from partialslip.benchmark.book import book_page
-from partialslip.benchmark.codes import CODES, code_answers
-from partialslip.benchmark.codes.own import Own
-from partialslip.benchmark.problem import read_frozen
-from partialslip.benchmark.tables import answer_from
-from partialslip.cli import main
-from partialslip.errors import InputError
-from partialslip.origin import made_now
-from partialslip.output.files import json_text
-from partialslip.output.lock import locked
-from partialslip.run import run
+from partialslip.verify.benchmark.book import book_page
+from partialslip.verify.benchmark.codes import CODES, code_answers
+from partialslip.verify.benchmark.codes.own import Own
+from partialslip.verify.benchmark.problem import read_frozen
+from partialslip.verify.benchmark.tables import answer_from
 
 SOME = {"PS-02": read_problems()["PS-02"]}
 

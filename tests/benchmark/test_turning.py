@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from closed import CLOSED, exact
 
-from partialslip.benchmark import read_problems, turning
-from partialslip.benchmark.codes.calculix import Calculix
-from partialslip.benchmark.codes.getfem import GetFEM
-from partialslip.benchmark.codes.opensees import OpenSees
-from partialslip.benchmark.increments import gradual, refined
-from partialslip.benchmark.neutral import files
-from partialslip.benchmark.turning import event_by_event, slip_reverses
-from partialslip.export.load_steps import steps_of
+from partialslip.codes.export.load_steps import steps_of
 from partialslip.halfplane import contact
 from partialslip.halfplane.turning import half_cycle
+from partialslip.verify.benchmark import read_problems, turning
+from partialslip.verify.benchmark.codes.calculix import Calculix
+from partialslip.verify.benchmark.codes.getfem import GetFEM
+from partialslip.verify.benchmark.codes.opensees import OpenSees
+from partialslip.verify.benchmark.increments import gradual, refined
+from partialslip.verify.benchmark.neutral import files
+from partialslip.verify.benchmark.turning import event_by_event, slip_reverses
 
 PROBLEMS = read_problems()
 NUMBER = "PS-27"

@@ -20,10 +20,10 @@ from outline import Outline
 
 import partialslip
 from partialslip.cli import main
-from partialslip.map import grid
-from partialslip.output import place
 from partialslip.report import files
 from partialslip.scene.reading import load_scene, parse_scene, shipped_scenes
+from partialslip.study.map import grid
+from partialslip.tools.output import place
 
 EXACT = ("run", "hertz-shear", "--with", "exact")
 WITHIN = "within 1 % of a, 10 % of p and q"

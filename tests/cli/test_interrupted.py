@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from partialslip.cli import main
-from partialslip.output import files, place
-from partialslip.output.files import write_files
-from partialslip.output.lock import LOCK_NAME  # this file may stay; the lock does not
+from partialslip.tools.output import files, place
+from partialslip.tools.output.files import write_files
+from partialslip.tools.output.lock import LOCK_NAME  # this file may stay; the lock does not
 from partialslip.verify.document import read_study
 
 RUN = (
@@ -241,7 +241,7 @@ def test_a_file_that_is_removed_before_it_is_locked_is_made_again(tmp_path, monk
 def test_only_what_nobody_writes_is_tidied_up(tmp_path):
     """Temporary files of killed writes are removed; files that another process is writing, and other files, stay."""
     code = (
-        "import sys, time; from pathlib import Path; from partialslip.output.files import write_files\n"
+        "import sys, time; from pathlib import Path; from partialslip.tools.output.files import write_files\n"
         "def write(path):\n path.write_text('half', 'utf-8'); print('busy', flush=True); time.sleep(60)\n"
         "write_files(Path('.'), {'a.txt': write})"
     )

@@ -8,8 +8,8 @@ import time
 
 import pytest
 
-from partialslip.output import lock
-from partialslip.output.lock import LOCK_NAME, FolderInUseError, locked
+from partialslip.tools.output import lock
+from partialslip.tools.output.lock import LOCK_NAME, FolderInUseError, locked
 
 resource = pytest.importorskip("resource")
 
@@ -17,8 +17,8 @@ resource = pytest.importorskip("resource")
 FULL = """
 import resource, sys
 from pathlib import Path
-from partialslip.errors import InputError
-from partialslip.output.lock import locked
+from partialslip.tools.errors import InputError
+from partialslip.tools.output.lock import locked
 resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
 try:
     with locked(Path(sys.argv[1])):
@@ -28,7 +28,7 @@ except InputError as error:
 """
 HANG_UP = """
 import os, signal, sys
-from partialslip.batch.sweep import workers
+from partialslip.study.batch.sweep import workers
 from partialslip.cli.ending import ended
 def command():
     with workers(processes=2) as pool:

@@ -14,12 +14,12 @@ import pytest
 
 import partialslip
 from partialslip.cli import common, main
-from partialslip.errors import InputError
-from partialslip.map import files as map_files
-from partialslip.map import grid
-from partialslip.output import lock, place
-from partialslip.output.files import write_new_file
-from partialslip.output.place import REQUEST_NAME, Request, placed, write_placed
+from partialslip.study.map import files as map_files
+from partialslip.study.map import grid
+from partialslip.tools.errors import InputError
+from partialslip.tools.output import lock, place
+from partialslip.tools.output.files import write_new_file
+from partialslip.tools.output.place import REQUEST_NAME, Request, placed, write_placed
 
 EXACT = ("run", "hertz-shear", "--with", "exact")
 USUAL = Path("results", "a")

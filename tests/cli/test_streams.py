@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from partialslip.cli import main
-from partialslip.errors import InputError
-from partialslip.output.lock import LOCK_NAME, locked
+from partialslip.tools.errors import InputError
+from partialslip.tools.output.lock import LOCK_NAME, locked
 
 COMMAND = (sys.executable, "-m", "partialslip")
 EXACT = ("run", "hertz-shear", "--with", "exact")

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from partialslip import load_scene, run
-from partialslip.equivalent import data, method, shares, stand_ins
-from partialslip.errors import InputError
 from partialslip.halfplane import contact, one_step_zone
-from partialslip.rig import Rig, Terms, key_of, write_rig
+from partialslip.march.equivalent import data, method, shares, stand_ins
+from partialslip.result.rig import Rig, Terms, key_of, write_rig
 from partialslip.run import rig_of
+from partialslip.tools.errors import InputError
 
 SCENE = "hertz-small-tension"  # a = 1 mm
 PAD = "bodies.upper={kind='pad', width=30e-3, height=8e-3, holder={width=40e-3, height=10e-3}, support='sides'}"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from partialslip import InputError, halfplane, load_scene
-from partialslip.equivalent import stand_ins, stick_zone
-from partialslip.rig import Rig, Terms, key_of
+from partialslip.march.equivalent import stand_ins, stick_zone
+from partialslip.result.rig import Rig, Terms, key_of
 
 SCENE = load_scene("hertz-small-tension", ["bodies.upper={width=16e-3, height=8e-3}",
                                            "bodies.lower={width=16e-3, height=8e-3}"])  # fmt: skip

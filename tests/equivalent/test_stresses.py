@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.fatigue import hot_spots
-from partialslip.fatigue.spots import off_by
-from partialslip.rig import Rig
+from partialslip.result.rig import Rig
+from partialslip.study.fatigue import hot_spots
+from partialslip.study.fatigue.spots import off_by
 
 BLOCK = {"width": 2e-3, "height": 2e-3}  # about 10 a
 SCENE = partialslip.parse_scene({

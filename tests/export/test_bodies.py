@@ -5,8 +5,8 @@ import pytest
 from decks import COARSE, UNIT, Deck, deck_equations, places
 
 from partialslip import load_scene
-from partialslip.export import export, parts
-from partialslip.export.model import modelled
+from partialslip.codes.export import export, parts
+from partialslip.codes.export.model import modelled
 
 SCENE = "hertz-large-tension"
 UNLIKE = ["material.upper={E=2e11, nu=0.3}", "load.sigma=[0, 0]"]

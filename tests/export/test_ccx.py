@@ -8,11 +8,11 @@ import pytest
 import varying as closed_form
 
 from partialslip import load_scene
-from partialslip.export import export
-from partialslip.export import model as models
-from partialslip.judge import compare
-from partialslip.score import score
-from partialslip.score.read import read_tractions
+from partialslip.codes.export import export
+from partialslip.codes.export import model as models
+from partialslip.codes.score import score
+from partialslip.codes.score.read import read_tractions
+from partialslip.run.judge import compare
 
 STIFFER = 100.0
 UNLIKE = ["material.upper={E=2e11, nu=0.3}", "load.sigma=[0, 0]", "load.Q=[-1e5, 1e5]"]

@@ -12,12 +12,12 @@ from decks import COARSE, UNIT, Deck, deck_equations, places
 
 from partialslip import load_scene
 from partialslip.cli import main
-from partialslip.errors import InputError
-from partialslip.export import FORMATS, export
-from partialslip.export import model as models
-from partialslip.export.calculix import deck_units
-from partialslip.export.model import modelled
-from partialslip.units import N_MM, N_UM, SI
+from partialslip.codes.export import FORMATS, export
+from partialslip.codes.export import model as models
+from partialslip.codes.export.calculix import deck_units
+from partialslip.codes.export.model import modelled
+from partialslip.scene.units import N_MM, N_UM, SI
+from partialslip.tools.errors import InputError
 
 SCENE, SIZE, GROWTH, STIFFER = "hertz-large-tension", 0.1, 0.4, 100.0
 # corners of the sides of a brick, in the numbering of Abaqus and CalculiX

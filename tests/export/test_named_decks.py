@@ -11,15 +11,15 @@ from named_decks import Mail, Table, aster_concepts, moose_blocks
 from refusing import line_of
 
 from partialslip import load_scene, score
-from partialslip.benchmark import read_problems
-from partialslip.benchmark.neutral import files as problem_files
 from partialslip.cli import main
-from partialslip.export import export
-from partialslip.export import named_boundaries as naming
-from partialslip.export.aster import aster_files
-from partialslip.export.model import modelled
-from partialslip.export.moose import moose_files
+from partialslip.codes.export import export
+from partialslip.codes.export import named_boundaries as naming
+from partialslip.codes.export.aster import aster_files
+from partialslip.codes.export.model import modelled
+from partialslip.codes.export.moose import moose_files
 from partialslip.run import run
+from partialslip.verify.benchmark import read_problems
+from partialslip.verify.benchmark.neutral import files as problem_files
 
 SCENE = "hertz-large-tension"
 PULLED = ["bodies.upper={kind='pad', width=0.02, height=0.01, holder={width=0.03, height=0.01}}",

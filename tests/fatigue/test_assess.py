@@ -7,10 +7,10 @@ import pytest
 from refusing import line_of
 
 import partialslip
-from partialslip.errors import InputError
-from partialslip.fatigue.cycle import phases_of
-from partialslip.fatigue.places import averaged, largest_at
 from partialslip.result.fields import StressAt
+from partialslip.study.fatigue.cycle import phases_of
+from partialslip.study.fatigue.places import averaged, largest_at
+from partialslip.tools.errors import InputError
 
 CONSTANTS = {
     "k_findley": 0.3,
@@ -172,7 +172,7 @@ PULLED = SCENE.replace(bodies={"lower": {"width": 40e-3, "height": 4e-3, "suppor
      "fatigue.distance = 0.007 m: must not leave the lower body below the hot spot; the body is 0.006 m high"),
 ])  # fmt: skip
 def test_a_distance_beyond_the_body_is_refused_before_anything_is_solved(scene, said, monkeypatch):
-    monkeypatch.setattr("partialslip.fatigue.assessment.solved_with_stresses", None)
+    monkeypatch.setattr("partialslip.study.fatigue.assessment.solved_with_stresses", None)
     assert line_of(partialslip.assess, scene) == said
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.fatigue import edges
-from partialslip.fatigue.tables import edge_table, edge_units
+from partialslip.study.fatigue import edges
+from partialslip.study.fatigue.tables import edge_table, edge_units
 
 SHEAR = "hertz-shear"
 

@@ -6,8 +6,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import partialslip
-from partialslip.fatigue import assess
-from partialslip.fatigue import figure as figures
+from partialslip.study.fatigue import assess
+from partialslip.study.fatigue import figure as figures
 
 MINUS = "\N{MINUS SIGN}"
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.fatigue import HotSpot, accuracy, assess, hot_spots
-from partialslip.fatigue.spots import off_by
-from partialslip.plan import asks_for_stresses
+from partialslip.scene.plan import asks_for_stresses
+from partialslip.study.fatigue import HotSpot, accuracy, assess, hot_spots
+from partialslip.study.fatigue.spots import off_by
 
 SCENE = partialslip.load_scene("fretting-aluminium").replace({"fatigue.distance": 50e-6, "fem.accuracy": 1e-4})
 AVERAGES = {f"{name}.{over}" for name in ("principal", "swt") for over in ("point", "line", "area")}

@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 
 import partialslip
-from partialslip.fatigue import assess, hot_spots
-from partialslip.fatigue.tables import (
+from partialslip.report.answer import with_error
+from partialslip.study.fatigue import assess, hot_spots
+from partialslip.study.fatigue.tables import (
     assessment_answer,
     assessment_heading,
     assessment_notes,
@@ -15,7 +16,6 @@ from partialslip.fatigue.tables import (
     edge_units,
     rating_table,
 )
-from partialslip.report.answer import with_error
 
 SCENE = partialslip.load_scene("fretting-aluminium", ["shown_in=N-mm"]).replace(
     {"fatigue.distance": 50e-6, "fem.accuracy": 1e-2}

@@ -7,12 +7,12 @@ import pytest
 import scipy.special
 
 import partialslip
-from partialslip.bars import CERTIFICATE_BAR
 from partialslip.halfplane import contact, loading, steady
 from partialslip.halfplane import traction as exact_traction
 from partialslip.halfplane.hertz import HertzShape
-from partialslip.judge import compare
 from partialslip.run import compared
+from partialslip.run.judge import compare
+from partialslip.tools.bars import CERTIFICATE_BAR
 
 LARGE = "hertz-large-tension"
 

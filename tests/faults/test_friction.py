@@ -9,13 +9,13 @@ from random_marches import CERTIFIED, forces
 from scipy.interpolate import PPoly
 
 import partialslip
-from partialslip.bars import CERTIFICATE_BAR
 from partialslip.friction import coulomb_constant_pressure, coupled_step, zone_ends
 from partialslip.friction.active_set import _BlockPivoting, solve_bounded
 from partialslip.friction.coulomb_constant_pressure import march as true_march
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march import similar as marching
 from partialslip.result.state import State
+from partialslip.tools.bars import CERTIFICATE_BAR
 from partialslip_fem import problem, solving
 
 LARGE = "hertz-large-tension"

@@ -10,7 +10,7 @@ import partialslip
 from partialslip import load_scene, plan
 from partialslip.cli import main
 from partialslip.result import Clock
-from partialslip.threads import one_thread
+from partialslip.tools.threads import one_thread
 from partialslip_fem import solve
 from partialslip_fem.problem import Part, scaled
 from partialslip_fem.solving import solve_on_meshes

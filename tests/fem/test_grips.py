@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from partialslip import InputError, load_state, parse_scene, run
-from partialslip.equivalent.many import stick_zone
-from partialslip.export.model import outlined
+from partialslip.codes.export.model import outlined
+from partialslip.march.equivalent.many import stick_zone
 from partialslip.run import characterise
 
 SCENE = {

@@ -8,9 +8,9 @@ import pytest
 import scipy.linalg as la
 
 import partialslip
-from partialslip.judge import cell_errors
-from partialslip.judge.means import norm_errors
 from partialslip.result import Clock, Traction, TractionAt
+from partialslip.run.judge import cell_errors
+from partialslip.run.judge.means import norm_errors
 from partialslip_fem import adapt, bodies
 from partialslip_fem.bodies import Grading
 from partialslip_fem.problem import scaled

@@ -5,8 +5,8 @@ import pytest
 
 import partialslip
 from partialslip import parse_scene, plan
-from partialslip.judge import cell_means
 from partialslip.result import Traction, TractionAt
+from partialslip.run.judge import cell_means
 from partialslip_fem import solve, solving
 
 ACCURACY = 1e-3

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from partialslip import load_scene, plan
-from partialslip.judge import cell_means
+from partialslip.run.judge import cell_means
 from partialslip_fem import condensation, solve
 
 COARSE = "fem.accuracy=1e-3"

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.judge import cell_errors
 from partialslip.result import Clock, Traction, TractionAt
+from partialslip.run.judge import cell_errors
 from partialslip_fem import mesh_solution
 from partialslip_fem.bodies import Grading
 from partialslip_fem.problem import scaled

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from partialslip import InputError, load_state, parse_scene, plan, run
-from partialslip.export.model import outlined
+from partialslip.codes.export.model import outlined
 from partialslip.friction.coupled_step import Pivot
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import characterise

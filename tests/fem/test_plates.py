@@ -15,9 +15,9 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 import partialslip
 from partialslip import InputError, PartialslipError, parse_scene, plan, run
 from partialslip.cli import main
-from partialslip.equivalent import stand_ins
-from partialslip.export.model import outlined
+from partialslip.codes.export.model import outlined
 from partialslip.friction import coulomb_coupled
+from partialslip.march.equivalent import stand_ins
 from partialslip.result.record import PlatesRecord
 from partialslip.run import default_methods
 from partialslip.scene import Bodies

@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import Legendre, Polynomial
 
 import partialslip
-from partialslip.bars import CERTIFICATE_BAR
+from partialslip.tools.bars import CERTIFICATE_BAR
 from partialslip_fem.mesh_solution import MeshSolution
 
 PAD = {

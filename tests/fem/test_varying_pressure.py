@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from partialslip import load_scene, parse_scene, run
-from partialslip.errors import InputError
 from partialslip.march import similar as marching
+from partialslip.tools.errors import InputError
 
 sys.path.append(str(Path(__file__).parent.parent / "halfplane"))
 from varying_scenes import varying

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from cell_contact import cells, loads
 
-from partialslip.arrays import runs, submatrix
 from partialslip.friction import active_set, coulomb_constant_pressure
 from partialslip.friction.active_set import Factored
 from partialslip.friction.coulomb_constant_pressure import march
@@ -17,6 +16,7 @@ from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
+from partialslip.tools.arrays import runs, submatrix
 
 N = 120
 X = np.cos(np.pi * (np.arange(N)[::-1] + 0.5) / N)

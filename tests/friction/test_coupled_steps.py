@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from partialslip import load_scene, parse_scene, run
-from partialslip.errors import PartialslipError
 from partialslip.friction.coupled_step import LoadStep, Pivot, solve
 from partialslip.friction.history import resting
 from partialslip.march.unlike import relative
+from partialslip.tools.errors import PartialslipError
 
 STEEL_ON_ALUMINIUM = ["material={upper={E=200e9, nu=0.3}, lower={E=70e9, nu=0.3}}", "fem.accuracy=1e-2"]
 HIGH, F = 19.3, 0.3  # height of the pin, in the scale of the contact, whose half-width is 1.1

@@ -9,8 +9,8 @@ from known import EXACT, SCENE, result
 import partialslip
 from partialslip.friction import history, limit
 from partialslip.friction.regime import _unsure
-from partialslip.judge import Outcome, compare
-from partialslip.judge.verdict import Bar, judge_regime
+from partialslip.run.judge import Outcome, compare
+from partialslip.run.judge.verdict import Bar, judge_regime
 
 CREEP = {
     "name": "creep",

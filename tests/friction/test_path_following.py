@@ -5,13 +5,13 @@ import itertools
 import numpy as np
 import pytest
 
-from partialslip.errors import PartialslipError
 from partialslip.friction import path_following
 from partialslip.friction.active_set import solve_bounded
 from partialslip.friction.path_following import Bounds, Follower
 from partialslip.friction.tableau import Tableau
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.march.cells import compliance, forces
+from partialslip.tools.errors import PartialslipError
 
 CERTIFIED = 1e-11  # residuals, in f P: rounding errors of a few hundred pivots
 DRIFTS = (0.6434668934976868, 8.670889385947003)  # (Q_f, s_f): the stick zone drifts, points slip and stick again

@@ -7,11 +7,11 @@ import pytest
 from scipy.optimize import brentq
 
 import partialslip
-from partialslip.errors import InputError
 from partialslip.halfplane import contact, hysteresis, one_step_zone, stick_zone
 from partialslip.halfplane.contact import contact_of
-from partialslip.judge.reference import reference
 from partialslip.run import run
+from partialslip.run.judge.reference import reference
+from partialslip.tools.errors import InputError
 
 HERTZ, FLAT = (partialslip.load_scene(name) for name in ("hertz-shear", "flat-rounded"))
 A = contact(HERTZ).a

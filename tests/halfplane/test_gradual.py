@@ -7,7 +7,6 @@ from lost import lost_way
 from reversed_loads import scene
 
 import partialslip
-from partialslip.gradual import _QF, _SF, _SLOPE, may_turn_round, turns_round
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.method import path_dependent
@@ -15,6 +14,7 @@ from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.run import default_methods
+from partialslip.scene.gradual import _QF, _SF, _SLOPE, may_turn_round, turns_round
 
 
 def loading_of(its):

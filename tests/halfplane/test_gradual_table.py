@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from partialslip.gradual import turns_round
 from partialslip.halfplane import contact, gradual_table, stick_zone
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import stick_zones
+from partialslip.scene.gradual import turns_round
 from partialslip.scene.reading import load_scene
 
 SEED = 20261  # played no part in making the table

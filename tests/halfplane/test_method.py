@@ -6,7 +6,7 @@ import pytest
 import partialslip
 from partialslip import load_scene, plan
 from partialslip.halfplane import solve
-from partialslip.judge import Outcome
+from partialslip.run.judge import Outcome
 
 
 def exact(name, *overrides):

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.errors import InputError
 from partialslip.halfplane import Contact, contact, contact_of, method
 from partialslip.halfplane import one_step_zone as stick_zone
 from partialslip.halfplane.hertz import HertzShape
@@ -23,6 +22,7 @@ from partialslip.halfplane.steady import stick_zones, transition
 from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.turning import Turning
 from partialslip.result import StickZone
+from partialslip.tools.errors import InputError
 from partialslip.verify.random_scenes import KINDS, PROFILES, changes, draw, kind_of, pressed_only
 
 PRESSURES = ("quartic", "kinked")

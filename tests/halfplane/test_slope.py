@@ -10,7 +10,6 @@ from digits import pressure
 
 import partialslip
 from partialslip import halfplane
-from partialslip.errors import InputError
 from partialslip.halfplane import steady
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.hertz import HertzShape
@@ -21,6 +20,7 @@ from partialslip.halfplane.slip import density, slip
 from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.run import default_methods
+from partialslip.tools.errors import InputError
 
 P = math.pi / 2  # of a contact with a = p0 = 1
 UNIT = Contact(1.0, P, HertzShape())

@@ -10,11 +10,11 @@ import pytest
 from refusing import line_of
 
 import partialslip
-from partialslip.errors import InputError
 from partialslip.halfplane import Contact, contact, contact_of, hysteresis, steady
 from partialslip.halfplane import one_step_zone as stick_zone
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
+from partialslip.tools.errors import InputError
 
 MATERIAL = {"E": 115e9, "nu": 0.32}
 F = 0.5

@@ -10,8 +10,6 @@ import pytest
 from digits import pressure
 
 import partialslip
-from partialslip.errors import InputError
-from partialslip.gradual import turns_round
 from partialslip.halfplane import Contact, Stress, cauchy, contact_of
 from partialslip.halfplane import stress as stress_module
 from partialslip.halfplane.hertz import HertzShape
@@ -20,6 +18,8 @@ from partialslip.halfplane.slip import density
 from partialslip.halfplane.steady import steady_stick_zone
 from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.turning import half_cycle
+from partialslip.scene.gradual import turns_round
+from partialslip.tools.errors import InputError
 
 F = 0.4
 SHAPES = {"hertz": HertzShape(), "0.5": Punch(0.5), "0.95": Punch(0.95), "table": Punch(np.linspace(0, 0.8, 5))}

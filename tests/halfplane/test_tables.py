@@ -10,8 +10,8 @@ from partialslip.halfplane.method import spacing_error
 from partialslip.halfplane.punch import Punch, _unit
 from partialslip.halfplane.shape import Given
 from partialslip.halfplane.tables import table_error
-from partialslip.record import record
 from partialslip.report.answer import answers
+from partialslip.report.record import record
 
 A, F = 4 * (1 - 0.3**2) / 70e9, 0.4
 P = 3 * np.pi * 1e-6 / (2 * A)  # with the gap 1e-6 (x/a)^4, a = 1 mm

@@ -5,8 +5,8 @@ import pytest
 
 import partialslip
 from partialslip import halfplane
-from partialslip.errors import InputError
 from partialslip.scene import Pressing
+from partialslip.tools.errors import InputError
 
 P = 2e6
 X = np.linspace(-3e-3, 3e-3, 61)

@@ -9,12 +9,12 @@ from scipy.integrate import quad
 from varying_scenes import varying
 
 from partialslip import load_scene, parse_scene, plan, run
-from partialslip.errors import InputError
 from partialslip.halfplane import contact
 from partialslip.halfplane import varying as halfplane_varying
 from partialslip.halfplane.mean_pressure import Mean, PressurePath
 from partialslip.halfplane.method import solve
 from partialslip.halfplane.varying import closed_form, steady_cycle
+from partialslip.tools.errors import InputError
 
 MODERATE = varying((0.8, 1), 0.32 * math.pi, 0.4)
 LARGE = varying((math.sqrt(0.6), math.sqrt(0.8)), 0.2 * math.pi, 4)

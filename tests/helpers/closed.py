@@ -2,9 +2,9 @@
 
 import functools
 
-from partialslip.benchmark import read_problems
-from partialslip.benchmark.freeze import derivations
 from partialslip.run import run
+from partialslip.verify.benchmark import read_problems
+from partialslip.verify.benchmark.freeze import derivations
 
 CLOSED = [number for number, problem in read_problems().items() if derivations(problem)[0].method == "exact"]
 

@@ -2,11 +2,11 @@
 
 from known import EXACT
 
-from partialslip.batch.job import Solved
-from partialslip.judge import Outcome
-from partialslip.record import SCHEMA, ComparisonRecord, PlanRecord, Record
+from partialslip.report.record import SCHEMA, ComparisonRecord, PlanRecord, Record
 from partialslip.result import Cost
 from partialslip.result.record import ResultRecord
+from partialslip.run.judge import Outcome
+from partialslip.study.batch.job import Solved
 
 
 def cost(cpu_s, **phases):

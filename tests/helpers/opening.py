@@ -3,8 +3,8 @@
 import functools
 from types import SimpleNamespace
 
-from partialslip.live import live_page
 from partialslip.scene.reading import load_scene
+from partialslip.study.live import live_page
 
 LARGE = "hertz-large-tension"
 made = functools.cache(live_page)

@@ -16,16 +16,16 @@ from unittest.mock import Mock, patch
 import numpy as np
 
 from partialslip import halfplane, load_scene, load_state, plan
-from partialslip.arrays import Array
 from partialslip.friction import coulomb_constant_pressure as coulomb
 from partialslip.friction import steps
 from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History
-from partialslip.judge import Q_BAR, cell_means
 from partialslip.march import method as marching
 from partialslip.march import similar
 from partialslip.result import Clock, Result
+from partialslip.run.judge import Q_BAR, cell_means
 from partialslip.scene import Scene
+from partialslip.tools.arrays import Array
 from partialslip_fem import bodies, solving
 from partialslip_fem import method as fem_method
 from partialslip_fem.contact import CondensedBody

@@ -5,7 +5,7 @@ from coulomb import recorded
 from numpy.polynomial import Legendre, legendre
 
 import partialslip
-from partialslip.judge import Outcome, conditions
+from partialslip.run.judge import Outcome, conditions
 from partialslip.verify.random_scenes import draw
 from partialslip_fem import goals
 

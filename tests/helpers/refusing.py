@@ -2,7 +2,7 @@
 
 import pytest
 
-from partialslip.errors import InputError
+from partialslip.tools.errors import InputError
 
 # Wording of the libraries below, which says nothing to whoever wrote the scene.
 FOREIGN = ("Traceback", "Object ", "Number ", "datetime", "str ", "`", "NoneType", "Errno")

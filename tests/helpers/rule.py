@@ -3,8 +3,8 @@
 import itertools
 from typing import get_args
 
-from partialslip.judge import Outcome, Verdict, conclude
 from partialslip.result import Regime
+from partialslip.run.judge import Outcome, Verdict, conclude
 
 WITHOUT = {"sliding", "frictionless"}
 REGIMES = get_args(Regime)

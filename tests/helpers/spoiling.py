@@ -10,18 +10,18 @@ from functools import cache
 import msgspec
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
+from partialslip.codes.score import _read_as
+from partialslip.codes.score.method import scored
+from partialslip.codes.score.samples import samples
 from partialslip.friction.load_path import load_path
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.method import solve
 from partialslip.march.cells import compliance, forces, graded_cells
-from partialslip.plan import plan
 from partialslip.result import Result
 from partialslip.scene import Friction, Scene
-from partialslip.score import _read_as
-from partialslip.score.method import scored
-from partialslip.score.samples import samples
+from partialslip.scene.plan import plan
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 ROUNDING = 1e-9  # of a
 REACH = 1.1  # half-widths

@@ -5,9 +5,9 @@ import pytest
 from known import EXACT, SCENE, result, traction
 
 from partialslip import compare
-from partialslip.bars import BARS, LARGEST, Asked, asked
-from partialslip.errors import InputError
-from partialslip.judge import Outcome
+from partialslip.run.judge import Outcome
+from partialslip.tools.bars import BARS, LARGEST, Asked, asked
+from partialslip.tools.errors import InputError
 
 
 @pytest.mark.parametrize("one", [1e-9, 2e-5, 1e-3])

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from partialslip import compare, load_scene, plan
-from partialslip.bars import CERTIFICATE_BAR
 from partialslip.halfplane import solve
-from partialslip.judge import Outcome, cell_errors, cell_means
 from partialslip.result import Traction, TractionAt
+from partialslip.run.judge import Outcome, cell_errors, cell_means
+from partialslip.tools.bars import CERTIFICATE_BAR
 
 SCENE = load_scene("hertz-large-tension")
 CELLS = np.array([-1.1, -0.9, -0.5, 0.1, 0.3, 0.97, 1.2])

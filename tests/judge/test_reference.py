@@ -9,13 +9,13 @@ from lost import lost_way
 
 import partialslip
 from partialslip import compare, load_scene
-from partialslip.judge import Outcome, outcome, verdict
-from partialslip.judge.known import error_of
-from partialslip.judge.reference import ALL_EFFECTS, reference, reference_among
-from partialslip.methods import METHODS, REFERENCES
-from partialslip.plan import plan
 from partialslip.result import RATCHETS
 from partialslip.run import compared, default_methods
+from partialslip.run.judge import Outcome, outcome, verdict
+from partialslip.run.judge.known import error_of
+from partialslip.run.judge.reference import ALL_EFFECTS, reference, reference_among
+from partialslip.scene.plan import plan
+from partialslip.tools.methods import METHODS, REFERENCES
 
 KNOWN = {"a": 1e-6, "p": 1e-6, "m": 1e-6, "n": 1e-6, "q": 1e-6}
 STEEL = "material={lower={E=2.1e11, nu=0.3}, upper={E=0.7e11, nu=0.3}}"

@@ -7,8 +7,8 @@ from known import EXACT, SCENE, SHARE, A, F, P, result
 from msgspec.structs import replace as changed
 
 from partialslip import compare
-from partialslip.judge import Outcome
-from partialslip.judge.verdict import _barely, _too_near
+from partialslip.run.judge import Outcome
+from partialslip.run.judge.verdict import _barely, _too_near
 
 NEXT = 1 - 1e-12
 

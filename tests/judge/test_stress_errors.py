@@ -6,9 +6,9 @@ import known
 import numpy as np
 import pytest
 
-from partialslip.judge.means import norm_errors
-from partialslip.judge.measures import inside_error, surface_error
 from partialslip.result import StressAt, SurfaceStress
+from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import inside_error, surface_error
 
 
 def surface(of=lambda x: 1.0 + 0 * x):

@@ -10,12 +10,12 @@ from known import EXACT, P0, SCENE, A, C, F, P, result, root, traction
 from msgspec.structs import replace as changed
 
 from partialslip import compare
-from partialslip.bars import BARS
-from partialslip.judge import NO_BAR, Bar, Outcome, Verdict, conditions, judged
-from partialslip.plan import plan
 from partialslip.result import SurfaceStress, TractionAt
 from partialslip.run import compared
+from partialslip.run.judge import NO_BAR, Bar, Outcome, Verdict, conditions, judged
 from partialslip.scene import Friction
+from partialslip.scene.plan import plan
+from partialslip.tools.bars import BARS
 
 NAN = float("nan")
 PASSED, MISSED, NOT_JUDGED = Outcome.PASSED, Outcome.MISSED, Outcome.NOT_JUDGED

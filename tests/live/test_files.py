@@ -9,15 +9,15 @@ import pytest
 from outline import Outline
 
 from partialslip.cli import main
-from partialslip.errors import InputError
-from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_table import tabled
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import stick_zones
-from partialslip.live import live_page
-from partialslip.output import place
+from partialslip.scene.gradual import turns_round
 from partialslip.scene.reading import load_scene
+from partialslip.study.live import live_page
+from partialslip.tools.errors import InputError
+from partialslip.tools.output import place
 
 
 @pytest.fixture(scope="module")

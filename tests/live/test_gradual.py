@@ -9,14 +9,14 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from partialslip.gradual import turns_round
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.gradual_table import parted, tabled
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import stick_zones
-from partialslip.live import page
+from partialslip.scene.gradual import turns_round
+from partialslip.study.live import page
 
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(not NODE, reason="node is not installed")
@@ -33,7 +33,7 @@ console.log(JSON.stringify(zones));
 
 def answered(script, told, change=lambda text: text):
     """What the page's program and a ``script`` print of what they are ``told``."""
-    source = change((files("partialslip.live") / "hertz.js").read_text("utf-8"))
+    source = change((files("partialslip.study.live") / "hertz.js").read_text("utf-8"))
     run = subprocess.run(
         [NODE, "-e", source + script], input=json.dumps(told), capture_output=True, text=True, check=True
     )

@@ -14,7 +14,7 @@ from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import steady_stick_zone, stick_zones, transition
 from partialslip.halfplane.traction import half_range
 from partialslip.scene.reading import load_scene
-from partialslip.units import engineering
+from partialslip.scene.units import engineering
 
 SIGNS = [
     (["load.Q=[-1e5, 1e5]", "load.sigma=[-3e8, 3e8]"], "large tension"),

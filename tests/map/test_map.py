@@ -11,7 +11,6 @@ import pytest
 from outline import texts
 
 from partialslip.cli import consoles, main
-from partialslip.gradual import turns_round
 from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads
@@ -19,11 +18,12 @@ from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.steady import steady_stick_zone, stick_zones, transition
-from partialslip.map import files as map_files
-from partialslip.map import grid, place, stick_map
-from partialslip.output.place import REQUEST_NAME
 from partialslip.result import StickZone
+from partialslip.scene.gradual import turns_round
 from partialslip.scene.reading import load_scene
+from partialslip.study.map import files as map_files
+from partialslip.study.map import grid, place, stick_map
+from partialslip.tools.output.place import REQUEST_NAME
 
 FILES = ["ends.svg", "map.csv", "map.svg"]
 DOCS = Path(__file__).parents[2] / "docs"

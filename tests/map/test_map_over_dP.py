@@ -9,12 +9,12 @@ from outline import texts
 from refusing import line_of
 
 from partialslip.cli import main
-from partialslip.errors import InputError
 from partialslip.halfplane.varying import steady_cycle
-from partialslip.map import place, stick_map, varying, varying_map
-from partialslip.map.varying_figure import varying_svg
 from partialslip.scene.reading import load_scene
 from partialslip.scene.writing import scene_toml
+from partialslip.study.map import place, stick_map, varying, varying_map
+from partialslip.study.map.varying_figure import varying_svg
+from partialslip.tools.errors import InputError
 
 P, A = 628318.5307179586, 1e-3  # of hertz-small-tension: a = 1 mm, p0 = 400 MPa, f = 0.5
 BASE = load_scene("hertz-small-tension")

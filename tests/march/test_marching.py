@@ -8,10 +8,10 @@ from flats import beside_the_flat
 from varying_scenes import varying
 
 import partialslip
-from partialslip.allowance import Allowance
-from partialslip.bars import BARS
 from partialslip.halfplane import contact, one_step_zone
 from partialslip.march import similar as marching
+from partialslip.tools.allowance import Allowance
+from partialslip.tools.bars import BARS
 from partialslip.verify.hard_cases.scenes import hard_scene
 
 MEAN = ["load.Q=[31415.926535897932, 219911.48575128554]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0

@@ -10,12 +10,12 @@ import partialslip
 from partialslip import load_scene, parse_scene
 from partialslip.friction import coulomb_coupled
 from partialslip.friction.even_gap import PARABOLA, EvenGap
-from partialslip.judge.means import norm_errors
 from partialslip.march import punch_growth, unlike
 from partialslip.march.punch_growth import PunchGrowth, goodman_stick_zone, relative
 from partialslip.march.unlike import dundurs
-from partialslip.plan import plan
 from partialslip.result import Clock
+from partialslip.run.judge.means import norm_errors
+from partialslip.scene.plan import plan
 
 STEEL = ("material.upper.E=210e9", "material.upper.nu=0.3", "load.cycles=2")
 SHEARED = ("fem.accuracy=1e-2", *STEEL)

@@ -10,9 +10,9 @@ from partialslip import parse_scene, run
 from partialslip.friction import coulomb_varying_pressure as stepping
 from partialslip.friction.load_path import Path, scaled_pressing, stretched
 from partialslip.friction.normal import Presses, press
-from partialslip.judge.verdict import Outcome
 from partialslip.march.cells import compliance, graded_cells
 from partialslip.march.pressing import NormalLoads
+from partialslip.run.judge.verdict import Outcome
 
 A1, A2 = 0.8, 1.0
 P1, P2 = (math.pi * a**2 / 2 for a in (A1, A2))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from refusing import line_of
 
-from partialslip.errors import InputError
+from partialslip.tools.errors import InputError
 from partialslip_meshes import block, deck, read
 
 FIELD = "bodies.lower.mesh"

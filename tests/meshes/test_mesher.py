@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.batch.job import Job, solve_job
-from partialslip.errors import MissingLibraryError, PartialslipError
+from partialslip.study.batch.job import Job, solve_job
+from partialslip.tools.errors import MissingLibraryError, PartialslipError
 from partialslip_meshes import block
 from partialslip_meshes import gmsh as mesher
 from partialslip_meshes import mesher as process

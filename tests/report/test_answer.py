@@ -10,12 +10,12 @@ from known import EXACT, P0, SCENE, A, C, F, P, result, traction
 from rich.console import Console
 
 from partialslip import load_scene, run
-from partialslip.judge import Outcome
-from partialslip.plan import plan
 from partialslip.report import answer, print_run, rows
 from partialslip.result.peak import pressure_peaks
 from partialslip.run import compared
+from partialslip.run.judge import Outcome
 from partialslip.scene import Scene
+from partialslip.scene.plan import plan
 
 REVERSES = ["load.Q=[-31415.926535897932, 31415.926535897932]", "load.sigma=[-3e9, 3e9]"]  # a very narrow zone drifts
 

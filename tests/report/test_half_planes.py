@@ -10,12 +10,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from partialslip import load_scene
-from partialslip.origin import made_now
-from partialslip.plan import plan
 from partialslip.report import rows
 from partialslip.report.figure import draw_errors, draw_run
 from partialslip.report.page import run_page
 from partialslip.run import compared
+from partialslip.scene.plan import plan
+from partialslip.tools.origin import made_now
 
 BLOCK = load_scene(
     "hertz-shear",

@@ -10,12 +10,12 @@ from known import A, C, F, P, result
 
 import partialslip
 from partialslip import load_scene
-from partialslip.plan import plan
 from partialslip.report import write_run
 from partialslip.report.loop import loop_csv, loop_remark, loop_rows, loop_svg
 from partialslip.result.plates import Plates
 from partialslip.result.record import ResultRecord
 from partialslip.run import compared
+from partialslip.scene.plan import plan
 
 STIFFNESS = 4e9
 BLOCKS = load_scene(

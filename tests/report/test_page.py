@@ -13,17 +13,17 @@ from matplotlib.figure import Figure
 
 import partialslip
 from partialslip.cli import main
-from partialslip.errors import MissingLibraryError
-from partialslip.origin import made_now, origin_lines
-from partialslip.output.svg import svg, with_dark_mode
-from partialslip.plan import plan
 from partialslip.report import files
 from partialslip.report.answer import amounts
 from partialslip.report.figure import draw_errors, mesh_svg
 from partialslip.report.page import Section, run_page, study_page
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import compared
+from partialslip.scene.plan import plan
 from partialslip.study.cost import ladder
+from partialslip.tools.errors import MissingLibraryError
+from partialslip.tools.origin import made_now, origin_lines
+from partialslip.tools.output.svg import svg, with_dark_mode
 from partialslip.verify import verify_suite
 
 MADE = made_now("partialslip run hertz-shear --set 'friction.f=0.4'", ["friction.f=0.4"])

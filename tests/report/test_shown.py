@@ -5,9 +5,9 @@ import pytest
 
 import partialslip
 from partialslip import halfplane
-from partialslip.map import stick_map
 from partialslip.report import record
 from partialslip.scene import Load, Tabulated
+from partialslip.study.map import stick_map
 
 SCENE = partialslip.load_scene("hertz-large-tension", ["fem.accuracy=1e-2"])
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from partialslip import Outcome, load_result, load_scene, run
-from partialslip.record import record
 from partialslip.report import write_run
-from partialslip.seal import edited, sealed_text
+from partialslip.report.record import record
+from partialslip.tools.seal import edited, sealed_text
 
 NUMBER = re.compile(r"(?<=[ \[])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?=[,\n\]}])")
 
@@ -160,7 +160,7 @@ def test_outcomes_follow_from_the_numbers(file, what, said):
 
 @pytest.mark.fault
 def test_outcomes_that_are_believed_are_seen(file, monkeypatch):
-    monkeypatch.setattr("partialslip.record.Record.judged_again", property(lambda record: record))
+    monkeypatch.setattr("partialslip.report.record.Record.judged_again", property(lambda record: record))
     changed(file, lambda data: (each_of("q", error=9.0)(data), every_outcome(data, "passed")))
     assert load(file).outcome == "passed"  # which the test above would not accept
 

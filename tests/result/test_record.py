@@ -13,9 +13,9 @@ from refusing import line_of
 
 import partialslip
 from partialslip import load_result, load_scene, run
-from partialslip.origin import made_now
-from partialslip.record import SCHEMA, record, schema
 from partialslip.report import write_run
+from partialslip.report.record import SCHEMA, record, schema
+from partialslip.tools.origin import made_now
 
 DOCS = Path(__file__).parents[2] / "docs"
 FAST = ["fem.accuracy=1e-2"]
@@ -89,7 +89,7 @@ def test_numbers_that_json_does_not_have_are_null():
 
 
 def test_the_schema_that_is_published_is_that_of_the_types():
-    """python -c "import json; from partialslip.record import schema; print(json.dumps(schema(), indent=1))" writes
+    """python -c "import json; from partialslip.report.record import schema; print(json.dumps(schema(), indent=1))" writes
     it."""
     assert json.loads((DOCS / "reference" / "results.schema.json").read_text("utf-8")) == json.loads(
         json.dumps(schema())

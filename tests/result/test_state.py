@@ -11,8 +11,8 @@ from scipy.interpolate import PPoly
 import partialslip
 from partialslip import InputError, load_scene, load_state, run
 from partialslip.cli import main
-from partialslip.judge.measures import measures
 from partialslip.march import driver as marching
+from partialslip.run.judge.measures import measures
 
 PAD = Path(__file__).parents[2] / "docs" / "scenes" / "finite-pad.toml"
 MEAN = ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "fem.accuracy=1e-3")

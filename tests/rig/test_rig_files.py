@@ -10,9 +10,9 @@ import pytest
 from refusing import line_of
 
 from partialslip import load_scene, run
-from partialslip.errors import InputError
-from partialslip.rig import Rig, Terms, key_of, load_rig, write_rig
+from partialslip.result.rig import Rig, Terms, key_of, load_rig, write_rig
 from partialslip.run import characterise, rig_of
+from partialslip.tools.errors import InputError
 
 SCENE = "hertz-small-tension"
 BLOCKS = ("bodies.upper={width=16e-3, height=8e-3}", "bodies.lower={width=16e-3, height=8e-3}")

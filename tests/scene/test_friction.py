@@ -7,12 +7,12 @@ import pytest
 from refusing import line_of
 
 import partialslip
-from partialslip.errors import InputError
-from partialslip.live.page import live_page
-from partialslip.map import stick_map
-from partialslip.plan import plan
 from partialslip.scene import Friction
+from partialslip.scene.plan import plan
 from partialslip.scene.writing import scene_toml
+from partialslip.study.live.page import live_page
+from partialslip.study.map import stick_map
+from partialslip.tools.errors import InputError
 
 SCENE = partialslip.load_scene("hertz-shear")
 

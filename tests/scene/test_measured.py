@@ -11,8 +11,8 @@ from partialslip import InputError, load_result, load_scene, run
 from partialslip.cli import main
 from partialslip.halfplane import contact, stick_zone
 from partialslip.halfplane.noise import noise_of
-from partialslip.record import record
 from partialslip.report.figure import profile_svg
+from partialslip.report.record import record
 from partialslip.scene.measured import refitted, smoothest
 
 SCENE = """

@@ -10,10 +10,10 @@ import pytest
 from refusing import line_of
 
 import partialslip
-from partialslip.errors import InputError, PartialslipError
-from partialslip.plan import Effect, plan
 from partialslip.scene import Material, Scene
+from partialslip.scene.plan import Effect, plan
 from partialslip.scene.reading import load_scene, parse_scene, shipped_scenes
+from partialslip.tools.errors import InputError, PartialslipError
 
 SHIPPED = sorted(shipped_scenes())
 EFFECTS = set(Effect.__args__)

@@ -12,9 +12,7 @@ import pytest
 from refusing import line_of
 
 import partialslip
-from partialslip.batch.ledger import scene_content
 from partialslip.cli import main
-from partialslip.errors import InputError
 from partialslip.report import answer, rows
 from partialslip.report.files import surface_csv, tractions_csv
 from partialslip.result.fields import SurfaceStress
@@ -23,8 +21,10 @@ from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.profiles import FlatRounded, Hertz, Tabulated
 from partialslip.scene.reading import load_scene, parse_scene, shipped_scenes
 from partialslip.scene.table import Table
+from partialslip.scene.units import N_MM, N_NM, N_UM, SI
 from partialslip.scene.writing import scene_tables, scene_toml
-from partialslip.units import N_MM, N_NM, N_UM, SI
+from partialslip.study.batch.ledger import scene_content
+from partialslip.tools.errors import InputError
 
 # Scene files with the numbers in SI units | in N, mm and MPa; together they have every key with a dimension.
 TWINS = {

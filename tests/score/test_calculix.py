@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from partialslip.errors import InputError
-from partialslip.score import calculix
-from partialslip.score.calculix import FACE_CORNERS
+from partialslip.codes.score import calculix
+from partialslip.codes.score.calculix import FACE_CORNERS
+from partialslip.tools.errors import InputError
 
 FRD = (Path(__file__).parent / "calculix.frd").read_text()
 

@@ -7,12 +7,12 @@ import pytest
 import spoiling
 
 from partialslip import load_scene, score
-from partialslip.judge.means import cell_means, means
-from partialslip.score.kinds import EVERY, RUNNING, Average
-from partialslip.score.samples import samples
+from partialslip.codes.score.kinds import EVERY, RUNNING, Average
+from partialslip.codes.score.samples import samples
+from partialslip.run.judge.means import cell_means, means
 
-ends = importlib.import_module("partialslip.score.ends")
-method = importlib.import_module("partialslip.score.method")
+ends = importlib.import_module("partialslip.codes.score.ends")
+method = importlib.import_module("partialslip.codes.score.method")
 SCENES = ("hertz-small-tension", "hertz-large-tension", "flat-rounded")
 
 

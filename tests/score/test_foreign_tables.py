@@ -9,8 +9,8 @@ from refusing import line_of
 
 from partialslip import InputError, load_scene, run
 from partialslip.cli import main
-from partialslip.score import headers, score
-from partialslip.score.read import read_tractions
+from partialslip.codes.score import headers, score
+from partialslip.codes.score.read import read_tractions
 
 SCENE = load_scene("fretting-aluminium")
 EXACT = run(SCENE, ["exact"]).results["exact"]

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from partialslip import load_scene, run, score
-from partialslip.errors import InputError
-from partialslip.judge import Outcome, verdict
-from partialslip.judge.verdict import judged
-from partialslip.record import record
 from partialslip.report.files import tractions_csv
+from partialslip.report.record import record
+from partialslip.run.judge import Outcome, verdict
+from partialslip.run.judge.verdict import judged
+from partialslip.tools.errors import InputError
 
 SCENE = load_scene("fretting-aluminium")
 EXACT = run(SCENE, ["exact"])["exact"]
@@ -76,8 +76,10 @@ def test_lines_between_points_for_the_points(tmp_path, monkeypatch):
     """Deliberate fault: the table for a function of x. What the spacing hides is then taken for an error."""
     path = written(tmp_path / "t.csv", sampled(45))
     assert compared(SCENE, path)[1].errors["p"] < 1e-10
-    monkeypatch.setattr(importlib.import_module("partialslip.score.method"), "observed", lambda _: None)
-    monkeypatch.setattr(importlib.import_module("partialslip.score"), "_too_far_apart", lambda _, result, __: result)
+    monkeypatch.setattr(importlib.import_module("partialslip.codes.score.method"), "observed", lambda _: None)
+    monkeypatch.setattr(
+        importlib.import_module("partialslip.codes.score"), "_too_far_apart", lambda _, result, __: result
+    )
     assert compared(SCENE, path)[1].errors["p"] > 1e-2
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from partialslip import load_scene, run
 from partialslip.cli import main
-from partialslip.output import files as module
-from partialslip.output.files import csv_text
+from partialslip.tools.output import files as module
+from partialslip.tools.output.files import csv_text
 
 FORMULAS = ("=1+1.csv", "+1-cmd.csv", "-1+1.csv", "@SUM(A1).csv", "\t=1.csv", "\r=1.csv")
 

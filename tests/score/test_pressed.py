@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from partialslip import load_scene
-from partialslip.score.method import scored
-from partialslip.score.read import read_tractions
+from partialslip.codes.score.method import scored
+from partialslip.codes.score.read import read_tractions
 
 UNLIKE = ["material.upper={E=2e11, nu=0.3}", "load={p0=400e6}", "friction.f=0.1"]
 

@@ -11,9 +11,9 @@ import pytest
 import partialslip
 from partialslip import load_scene, run, score
 from partialslip.cli import main
-from partialslip.judge import Outcome
-from partialslip.output import place
-from partialslip.score.samples import Samples
+from partialslip.codes.score.samples import Samples
+from partialslip.run.judge import Outcome
+from partialslip.tools.output import place
 
 SCENES = ("hertz-shear", "hertz-small-tension", "hertz-large-tension", "fretting-aluminium", "flat-rounded")
 FIXTURES = Path(__file__).parent

@@ -7,7 +7,7 @@ import spoiling
 
 from partialslip import load_scene
 
-method = importlib.import_module("partialslip.score.method")
+method = importlib.import_module("partialslip.codes.score.method")
 SCENE = load_scene("fretting-aluminium")
 
 

@@ -9,7 +9,7 @@ from msgspec.json import encode
 from partialslip import halfplane, load_scene, run, score
 from partialslip.cli import main
 from partialslip.halfplane.loading import loading
-from partialslip.judge import Outcome
+from partialslip.run.judge import Outcome
 
 BAR = 1e-3
 SCENES = {
@@ -42,7 +42,7 @@ def solved(scene, methods, **settings):
 
 @pytest.fixture(autouse=True)
 def _solved_once(monkeypatch):
-    monkeypatch.setattr(importlib.import_module("partialslip.score"), "run", solved)
+    monkeypatch.setattr(importlib.import_module("partialslip.codes.score"), "run", solved)
 
 
 def exact(name):
@@ -210,7 +210,7 @@ def test_a_strip_without_points_that_is_taken_for_none(tmp_path, monkeypatch):
     assert "m: on the way the end of the stick zone takes back 0.003 a, too little for points so far apart" in str(
         found.results["table.csv"].notes
     )
-    monkeypatch.setattr(importlib.import_module("partialslip.score"), "_unresolved", lambda result, *_: result)
+    monkeypatch.setattr(importlib.import_module("partialslip.codes.score"), "_unresolved", lambda result, *_: result)
     assert score(SCENES["takes back"], path, bar=BAR).outcome is Outcome.MISSED
 
 
@@ -260,7 +260,7 @@ def test_the_command_says_so(tmp_path, capsys, refused, monkeypatch):
 @pytest.mark.fault
 def test_a_rule_that_any_pass_passes_lets_them_through(tmp_path, monkeypatch):
     """Deliberate fault: a pass in anything passes all, as it was. A table without a stick zone then passes."""
-    from partialslip.judge import outcome
+    from partialslip.run.judge import outcome
 
     path = write(tmp_path, in_proportion("not followed"))
     assert score(SCENES["not followed"], path, bar=1e-2).outcome is Outcome.NOT_JUDGED

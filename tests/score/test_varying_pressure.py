@@ -9,14 +9,14 @@ import pytest
 import varying
 
 from partialslip.cli import main
-from partialslip.errors import InputError
-from partialslip.judge import compare
-from partialslip.score import calculix
-from partialslip.score.mistakes import mistakes
-from partialslip.score.read import read_tractions
-from partialslip.score.samples import Samples
+from partialslip.codes.score import calculix
+from partialslip.codes.score.mistakes import mistakes
+from partialslip.codes.score.read import read_tractions
+from partialslip.codes.score.samples import Samples
+from partialslip.run.judge import compare
+from partialslip.tools.errors import InputError
 
-method = importlib.import_module("partialslip.score.method")
+method = importlib.import_module("partialslip.codes.score.method")
 SCENE, TRUE = varying.SCENE, varying.solved(varying.SCENE)
 FRD = Path(__file__).parent / "calculix.frd"
 

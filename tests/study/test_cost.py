@@ -8,10 +8,10 @@ import pytest
 from outline import texts
 
 import partialslip
-from partialslip.batch.job import Job, ProcessCost, solve_apart
-from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
 from partialslip.cli.cost import _left_out, _progress
+from partialslip.study.batch.job import Job, ProcessCost, solve_apart
+from partialslip.study.batch.ledger import Ledger
 from partialslip.study.cost import ladder as cost
 from partialslip.study.cost.figure import errors_svg, phases_svg
 from partialslip.study.cost.spending import Spending

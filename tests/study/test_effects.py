@@ -17,7 +17,7 @@ from partialslip.cli import main
 from partialslip.friction.coulomb_constant_pressure import march as follow_path
 from partialslip.friction.load_path import Path, stretched
 from partialslip.march import method as marching
-from partialslip.plan import reduced
+from partialslip.scene.plan import reduced
 from partialslip_fem import Kept, bodies, condensation, solving
 from partialslip_fem import method as fem_method
 

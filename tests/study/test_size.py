@@ -19,10 +19,10 @@ import pytest
 from outline import texts as texts_of
 from size_entries import X, entries, made_sizes, scene, sized
 
-from partialslip.batch.job import Job, solve_job
-from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import Task, work_through, workers
 from partialslip.cli import main
+from partialslip.study.batch.job import Job, solve_job
+from partialslip.study.batch.ledger import Ledger
+from partialslip.study.batch.sweep import Task, work_through, workers
 from partialslip.study.size import sizes as size
 from partialslip.study.size import tables
 from partialslip.study.size.axes import axis as read
@@ -50,7 +50,7 @@ def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
         solved.append(job.labels["number"])
         return solve_job(job)
 
-    monkeypatch.setattr("partialslip.batch.job.solve_job", counted)
+    monkeypatch.setattr("partialslip.study.batch.job.solve_job", counted)
     with ThreadPoolExecutor(1) as executor:
         work_through([case.task for case in cases[:4]], Ledger(path), executor)
         seen = []
@@ -98,7 +98,7 @@ def test_in_this_process_each_case_is_kept_before_the_next_begins(tmp_path):
 
 WORKERS = """
 import os, time
-from partialslip.batch.sweep import workers
+from partialslip.study.batch.sweep import workers
 with workers(processes=2) as pool:
     print(*{pool.submit(os.getpid).result() for _ in range(8)}, flush=True)
     list(pool.map(time.sleep, [60] * 4))

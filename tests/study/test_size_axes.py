@@ -6,11 +6,11 @@ from refusing import line_of
 from size_entries import entries, scene
 
 import partialslip
+from partialslip.scene.units import N_MM
 from partialslip.study.size import sizes as size
 from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import compared_methods
-from partialslip.units import N_MM
 
 
 @pytest.mark.parametrize(

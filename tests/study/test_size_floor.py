@@ -8,7 +8,7 @@ import pytest
 from size_entries import X, made_sizes, scene
 
 import partialslip
-from partialslip.batch.ledger import Ledger
+from partialslip.study.batch.ledger import Ledger
 from partialslip.study.size import sizes as size
 from partialslip.study.size import tables
 from partialslip.study.size.axes import axis as read

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from size_entries import entries, scene, sized
 
-from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import workers
-from partialslip.errors import InputError
-from partialslip.fatigue import HotSpot
+from partialslip.study.batch.ledger import Ledger
+from partialslip.study.batch.sweep import workers
+from partialslip.study.fatigue import HotSpot
 from partialslip.study.size import sizes as size
 from partialslip.study.size import stresses, tables
 from partialslip.study.size.axes import axis as read
@@ -18,6 +17,7 @@ from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import Sized, solve_sized
 from partialslip.study.size.figure import size_svg
 from partialslip.study.size.stresses import criteria_of
+from partialslip.tools.errors import InputError
 
 
 def with_stresses(entry, fem, half_plane, error=1e-6):

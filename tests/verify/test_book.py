@@ -2,7 +2,7 @@
 
 import pytest
 
-from partialslip.judge import Outcome
+from partialslip.run.judge import Outcome
 from partialslip.verify.case import run_case
 from partialslip.verify.suites import suite
 

@@ -9,8 +9,8 @@ import pytest
 
 import partialslip
 from partialslip.halfplane import loading
-from partialslip.judge import Outcome
 from partialslip.march import similar as marching
+from partialslip.run.judge import Outcome
 from partialslip.verify import FAMILIES, hard_cases, run_case
 from partialslip.verify.hard_cases.catalogue import catalogue_page
 from partialslip_fem import estimate

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from partialslip.halfplane.contact import contact
-from partialslip.judge import Outcome
+from partialslip.run.judge import Outcome
 from partialslip.verify import suites
 from partialslip.verify.case import run_case
 from partialslip.verify.random_scenes import SHARE, WAYS, draw, draw_varying, varies

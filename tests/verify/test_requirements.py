@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from known import EXACT, SCENE, A, result, traction
 
-from partialslip.bars import BARS
-from partialslip.judge import Bar, Outcome
 from partialslip.run import Run
+from partialslip.run.judge import Bar, Outcome
+from partialslip.tools.bars import BARS
 from partialslip.verify import REQUIREMENTS, Case, CaseVerdict, judge_case, number_of, requirement_of, run_case
 from partialslip.verify import case as module
 from partialslip.verify.case import Failure, conclusions, solve_case, whole

@@ -7,7 +7,7 @@ import pytest
 from refusing import line_of
 
 from partialslip import InputError, shipped_scenes
-from partialslip.benchmark import read_problems
+from partialslip.verify.benchmark import read_problems
 from partialslip.verify.hard_cases.catalogue import hard_cases
 from partialslip.verify.random_scenes import kind_of
 from partialslip.verify.suites import stress_numbers, stress_suite, suite

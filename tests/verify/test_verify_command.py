@@ -17,15 +17,15 @@ import numpy as np
 import pytest
 from random_marches import FINEST
 
-from partialslip.batch import ledger
-from partialslip.batch.ledger import Ledger
 from partialslip.cli import main
 from partialslip.cli import verify as command
-from partialslip.judge import Bar, Outcome, verdict
 from partialslip.march import similar as marching
-from partialslip.output.lock import LOCK_NAME
 from partialslip.run import run
+from partialslip.run.judge import Bar, Outcome, verdict
 from partialslip.scene.reading import load_scene
+from partialslip.study.batch import ledger
+from partialslip.study.batch.ledger import Ledger
+from partialslip.tools.output.lock import LOCK_NAME
 from partialslip.verify import Case, driver, run_case, stress_suite, suite
 from partialslip.verify.hard_cases.meshes import shifted
 from partialslip.verify.random_scenes import KINDS, PROFILES, draw, varies
@@ -144,9 +144,9 @@ def test_what_another_run_takes_over(change, solved_again, tmp_path, monkeypatch
 # A verification with one case per worker, stopped by kill -9 when the first case is in the ledger.
 KILLED = """
 import os, signal, sys
-from partialslip.batch import ledger
+from partialslip.study.batch import ledger
 from partialslip.verify import driver
-from partialslip.batch.ledger import Ledger
+from partialslip.study.batch.ledger import Ledger
 add = Ledger.add
 def added(self, key, found):
     add(self, key, found)

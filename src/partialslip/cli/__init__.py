@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import partialslip
 from partialslip.cli import benchmark, completion, equivalent, export, fatigue, maps, page, run, score, study, verify
 from partialslip.cli.ending import ended
-from partialslip.errors import InputError
+from partialslip.tools.errors import InputError
 
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite

@@ -14,12 +14,12 @@ from partialslip.cli.common import (
     print_written,
     results_folder,
 )
-from partialslip.errors import InputError
+from partialslip.tools.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from partialslip.benchmark import Problem, Submission
+    from partialslip.verify.benchmark import Problem, Submission
 
 _LACKING = "an answer without a headline target"
 _PROBLEMS = "numbers of problems, or patterns such as PS-0*, separated by commas (default: all)"
@@ -106,9 +106,9 @@ def add(commands: Commands) -> None:
 
 
 def _list(_: argparse.Namespace) -> int:
-    from partialslip.benchmark import read_problems
     from partialslip.cli.consoles import output
-    from partialslip.output.tables import print_table
+    from partialslip.tools.output.tables import print_table
+    from partialslip.verify.benchmark import read_problems
 
     table = [(each.number, each.title, each.regime, str(len(each.targets))) for each in read_problems().values()]
     print_table(output(), ("", "problem", "regime", "targets"), table, words=(0, 1, 2))
@@ -116,10 +116,10 @@ def _list(_: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from partialslip.benchmark.codes import code_answers, installed
-    from partialslip.benchmark.problem import chosen_problems
-    from partialslip.benchmark.submission import META
     from partialslip.cli.consoles import counting, output
+    from partialslip.verify.benchmark.codes import code_answers, installed
+    from partialslip.verify.benchmark.problem import chosen_problems
+    from partialslip.verify.benchmark.submission import META
 
     check_output(options)
     installed(options.code)
@@ -136,10 +136,10 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _read(options: argparse.Namespace) -> int:
-    from partialslip.benchmark.problem import numbered
-    from partialslip.benchmark.submission import add_answer
-    from partialslip.benchmark.tables import answer_from
     from partialslip.cli.consoles import output
+    from partialslip.verify.benchmark.problem import numbered
+    from partialslip.verify.benchmark.submission import add_answer
+    from partialslip.verify.benchmark.tables import answer_from
 
     problem, named = numbered(options.problem), options.code is not None
     code = options.code if named else Path(options.file).stem
@@ -149,16 +149,16 @@ def _read(options: argparse.Namespace) -> int:
 
 
 def _score(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import read_problems, read_submission
-    from partialslip.benchmark.problem import chosen_problems
+    from partialslip.verify.benchmark import read_problems, read_submission
+    from partialslip.verify.benchmark.problem import chosen_problems
 
     return _graded(read_submission(options.folder, read_problems()), chosen_problems(options.problems))
 
 
 def _check(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import handed_in, read_problems
     from partialslip.cli.consoles import output
-    from partialslip.errors import one_line
+    from partialslip.tools.errors import one_line
+    from partialslip.verify.benchmark import handed_in, read_problems
 
     known = read_problems()
     submission, wrong = handed_in(options.folder, known)
@@ -174,9 +174,9 @@ def _check(options: argparse.Namespace) -> int:
 
 def _graded(submission: "Submission", some: "Mapping[str, Problem]") -> int:
     """Print grades, ladders and remarks on tables of a submission. Returns the exit code of :func:`_print_grades`."""
-    from partialslip.benchmark import CLIMB_HEADS, climb_rows
     from partialslip.cli.consoles import output
-    from partialslip.output.tables import print_table
+    from partialslip.tools.output.tables import print_table
+    from partialslip.verify.benchmark import CLIMB_HEADS, climb_rows
 
     code = _print_grades(submission, some)
     every = len(some) == 1
@@ -199,12 +199,12 @@ def _graded(submission: "Submission", some: "Mapping[str, Problem]") -> int:
 def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> int:
     """Print the grades of a submission, with the target that decides. Returns the exit code: 4 if an answer lacks a
     headline target."""
-    from partialslip.benchmark.grade import NOT_GRADED, NOT_OFFERED
-    from partialslip.benchmark.measured import GROUPS
-    from partialslip.benchmark.scoreboard import grades, standing
     from partialslip.cli.consoles import output
-    from partialslip.judge.outcome import UNJUDGED
-    from partialslip.output.tables import print_table
+    from partialslip.run.judge.outcome import UNJUDGED
+    from partialslip.tools.output.tables import print_table
+    from partialslip.verify.benchmark.grade import NOT_GRADED, NOT_OFFERED
+    from partialslip.verify.benchmark.measured import GROUPS
+    from partialslip.verify.benchmark.scoreboard import grades, standing
 
     console, table, lacking = output(), [], list[str]()
     titled, short = console.width >= _TITLED, {NOT_OFFERED: "-", NOT_GRADED: "?"}
@@ -232,13 +232,13 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> in
 
 
 def _build(options: argparse.Namespace) -> int:
-    from partialslip.benchmark import badge, badge_names, book_page, book_zip, read_problems, read_submission
-    from partialslip.benchmark.problem import chosen_problems
     from partialslip.cli.common import origin
     from partialslip.cli.consoles import output
-    from partialslip.errors import MissingLibraryError
-    from partialslip.output.files import write_files, write_texts
-    from partialslip.output.page import check_pdf, write_pdf
+    from partialslip.tools.errors import MissingLibraryError
+    from partialslip.tools.output.files import write_files, write_texts
+    from partialslip.tools.output.page import check_pdf, write_pdf
+    from partialslip.verify.benchmark import badge, badge_names, book_page, book_zip, read_problems, read_submission
+    from partialslip.verify.benchmark.problem import chosen_problems
 
     check_output(options)
     some = chosen_problems(options.problems)

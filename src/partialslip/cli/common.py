@@ -8,17 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import partialslip
-from partialslip.errors import InputError
-from partialslip.groups import grouped
+from partialslip.tools.errors import InputError
+from partialslip.tools.groups import grouped
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from partialslip.batch.ledger import Ledger
-    from partialslip.origin import Made
-    from partialslip.output.place import Place, Request
     from partialslip.run import Run
     from partialslip.scene import Scene
+    from partialslip.study.batch.ledger import Ledger
+    from partialslip.tools.origin import Made
+    from partialslip.tools.output.place import Place, Request
 
 Commands: TypeAlias = "argparse._SubParsersAction[Any]"
 
@@ -82,7 +82,7 @@ def add_pdf(parser: argparse.ArgumentParser, told: str = "also write the report 
 
 def origin(options: argparse.Namespace) -> "Made":
     """Return the origin of results by the command of ``options``: the same for what is printed and what is written."""
-    from partialslip.origin import made_now
+    from partialslip.tools.origin import made_now
 
     if "made" not in options:
         options.made = made_now(options.line, options.overrides)
@@ -126,7 +126,7 @@ def check_output(options: argparse.Namespace) -> None:
     if options.out == "":
         raise InputError("--out '': must name a folder")
     if "pdf" in options and options.pdf:
-        from partialslip.output.page import check_pdf
+        from partialslip.tools.output.page import check_pdf
 
         check_pdf("--pdf")
 
@@ -168,7 +168,7 @@ def seconds(budget: str, others: str = "") -> float:
 def results_folder(
     options: argparse.Namespace, command: str, name: str, scene: "Scene | None", *more: Any
 ) -> "AbstractContextManager[Place]":
-    """Choose and lock the folder for the files of a command (:func:`partialslip.output.place.placed`).
+    """Choose and lock the folder for the files of a command (:func:`partialslip.tools.output.place.placed`).
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def results_folder(
     more : optional
         ``known``, ``usual`` and ``constants`` of :func:`request`.
     """
-    from partialslip.output.place import placed
+    from partialslip.tools.output.place import placed
 
     asked = request(options, command, scene, *more)
     return placed(Path("results") / name, options.out, asked, options.force)
@@ -221,9 +221,9 @@ def request(
     constants : bool
         Whether constants of fatigue criteria change the results.
     """
-    from partialslip.output.place import Request
     from partialslip.scene.dimensions import shown
-    from partialslip.units import SI
+    from partialslip.scene.units import SI
+    from partialslip.tools.output.place import Request
 
     units = scene.units if scene else SI
 
@@ -251,7 +251,7 @@ def _content(scene: "Scene | None", constants: bool) -> dict[str, Any]:
         return {}
     import msgspec
 
-    from partialslip.batch.ledger import scene_content
+    from partialslip.study.batch.ledger import scene_content
 
     more = {"shown_in": scene.shown_in} | ({"fatigue": msgspec.to_builtins(scene.fatigue)} if constants else {})
     return {key: value for key, value in scene_content(scene).items() if key != "title"} | more
@@ -259,7 +259,7 @@ def _content(scene: "Scene | None", constants: bool) -> dict[str, Any]:
 
 def _plain(settings: Mapping[str, object]) -> dict[str, object]:
     """Return ``settings`` that are given, as plain data."""
-    from partialslip.output.place import content
+    from partialslip.tools.output.place import content
 
     return {
         key: content(value) if isinstance(value, Path) else value
@@ -287,8 +287,8 @@ def _why(elsewhere: str) -> str:
 def study_ledger(folder: Path) -> "Ledger":
     """Open the ledger of a study in ``folder``, from which a stopped study continues. Tell how many entries of the
     ledger were made by other source files."""
-    from partialslip.batch.ledger import Ledger
     from partialslip.cli.consoles import messages
+    from partialslip.study.batch.ledger import Ledger
 
     ledger = Ledger(folder / "ledger.jsonl")
     if count := ledger.outdated:

@@ -19,7 +19,7 @@ from partialslip.cli.common import (
     study_ledger,
 )
 from partialslip.cli.findings import Findings, present
-from partialslip.errors import InputError
+from partialslip.tools.errors import InputError
 
 if TYPE_CHECKING:
     from partialslip.study.cost.ladder import CostPoint, MeasuredCosts
@@ -87,10 +87,10 @@ def _evaluated(
     options: argparse.Namespace, name: str, measured: "MeasuredCosts", peers: "list[CostPoint]", ledger: Path
 ) -> Findings:
     """Draw, write and tabulate what was ``measured`` of the scene ``name``."""
-    from partialslip.output.files import csv_text, write_texts
     from partialslip.report.page import Section
     from partialslip.study.cost import ladder
     from partialslip.study.cost.figure import errors_svg, phases_svg
+    from partialslip.tools.output.files import csv_text, write_texts
 
     found = measured.points
     phases = phases_svg(found, f"{name}: where the time goes")

@@ -31,10 +31,10 @@ def _effects(options: argparse.Namespace) -> int:
     name = f"{scene.name}-effects"
 
     from partialslip.cli.consoles import working
-    from partialslip.output.files import json_text, write_texts
     from partialslip.report.page import Section
     from partialslip.study.effects import worth
     from partialslip.study.effects.figure import effects_svg
+    from partialslip.tools.output.files import json_text, write_texts
 
     def find(folder: Path) -> Findings:
         with working(name) as tell:

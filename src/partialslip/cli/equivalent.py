@@ -11,9 +11,9 @@ from partialslip.cli.findings import Findings, present
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from partialslip.equivalent import Share
+    from partialslip.march.equivalent import Share
     from partialslip.report.page import Section
-    from partialslip.units import Units
+    from partialslip.scene.units import Units
 
 RIG, SCENE = "rig.json", "half-planes.toml"
 
@@ -41,11 +41,11 @@ def _equivalent(options: argparse.Namespace) -> int:
     scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import working
-    from partialslip.equivalent import in_words, shares, stand_ins
-    from partialslip.output.files import write_files
-    from partialslip.rig import write_rig
+    from partialslip.march.equivalent import in_words, shares, stand_ins
+    from partialslip.result.rig import write_rig
     from partialslip.run import rig_of
     from partialslip.scene.writing import scene_toml
+    from partialslip.tools.output.files import write_files
 
     with working(scene.name) as tell, naming(options.scene):
         rig = rig_of(scene)
@@ -72,7 +72,7 @@ def _equivalent(options: argparse.Namespace) -> int:
 def _gains(found: "Sequence[Share]", units: "Units") -> "Section":
     """Return the table of what loads add to half-planes, in ``units``; in SI units with prefixes."""
     from partialslip.report.page import Section
-    from partialslip.units import SI
+    from partialslip.scene.units import SI
 
     force = "kN/m" if units == SI else units.label("N/m")  # 1 N/mm is as much
     rows = []

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import partialslip
 from partialslip.cli.common import Commands, add_out, add_scene, print_written, request
-from partialslip.errors import InputError
+from partialslip.tools.errors import InputError
 
 _TO = ("calculix", "abaqus", "gmsh", "moose", "code-aster")
 
@@ -53,8 +53,8 @@ def add(commands: Commands) -> None:
 
 def _export(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
-    from partialslip.export import FORMATS, export
-    from partialslip.output.place import write_placed
+    from partialslip.codes.export import FORMATS, export
+    from partialslip.tools.output.place import write_placed
 
     if options.out == "":
         raise InputError("--out '': must name a file")

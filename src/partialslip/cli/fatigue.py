@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import partialslip
 from partialslip.cli.common import Commands, add_method, add_out, add_pdf, add_scene, check_output, naming
 from partialslip.cli.findings import Findings, present
-from partialslip.errors import InputError
-from partialslip.methods import REFERENCES
+from partialslip.tools.errors import InputError
+from partialslip.tools.methods import REFERENCES
 
 if TYPE_CHECKING:
-    from partialslip.fatigue import Assessment
     from partialslip.report.page import Section
     from partialslip.scene import Scene
+    from partialslip.study.fatigue import Assessment
 
 
 def add(commands: Commands) -> None:
@@ -53,10 +53,10 @@ def _fatigue(options: argparse.Namespace) -> int:
     scene = partialslip.load_scene(options.scene, options.overrides)
 
     from partialslip.cli.consoles import working
-    from partialslip.fatigue import assess, tables
-    from partialslip.fatigue.criteria import check_distance, chosen
-    from partialslip.fatigue.page import drawn, sections, write_assessment
     from partialslip.run import solved_with_stresses
+    from partialslip.study.fatigue import assess, tables
+    from partialslip.study.fatigue.criteria import check_distance, chosen
+    from partialslip.study.fatigue.page import drawn, sections, write_assessment
 
     names = None if options.criterion is None else [name.strip() for name in options.criterion.split(",")]
     with naming(options.scene):
@@ -91,8 +91,8 @@ def _check_method(scene: "Scene", method: str | None) -> None:
 
 def _printed(found: "Assessment") -> "list[str | Section]":
     """Return the tables of an assessment and the lines between them."""
-    from partialslip.fatigue import tables
     from partialslip.report.page import Section
+    from partialslip.study.fatigue import tables
 
     parts: list[str | Section] = [tables.assessment_answer(found)]
     if found.ratings:

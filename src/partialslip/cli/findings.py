@@ -57,7 +57,7 @@ def present(
         ``find(folder)`` writes its files into the folder, which is locked meanwhile.
     """
     from partialslip.cli.consoles import output
-    from partialslip.output.tables import print_table
+    from partialslip.tools.output.tables import print_table
 
     with results_folder(options, command, name, scene, *more) as (folder, elsewhere):
         found = find(folder)

@@ -6,7 +6,7 @@ from pathlib import Path
 import partialslip
 from partialslip.cli.common import Commands, add_out, add_scene, check_output
 from partialslip.cli.findings import Findings, present
-from partialslip.errors import InputError
+from partialslip.tools.errors import InputError
 
 
 def add(commands: Commands) -> None:
@@ -32,7 +32,7 @@ def _map(options: argparse.Namespace) -> int:
     name = "map" if scene is None else f"{scene.name}-map"
 
     from partialslip.cli.consoles import working
-    from partialslip.map import place, stick_map, varying_map, write_map
+    from partialslip.study.map import place, stick_map, varying_map, write_map
 
     def find(folder: Path) -> Findings:
         with working(name) as tell:

@@ -30,9 +30,9 @@ def _page(options: argparse.Namespace) -> int:
     check_output(options)
     scene = partialslip.load_scene(options.scene, options.overrides)
 
-    from partialslip.live import live_page
-    from partialslip.map.files import bodies_left_out
-    from partialslip.output.files import write_texts
+    from partialslip.study.live import live_page
+    from partialslip.study.map.files import bodies_left_out
+    from partialslip.tools.output.files import write_texts
 
     text, lines = live_page(scene), bodies_left_out(scene, "the page")
 

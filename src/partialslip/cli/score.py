@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TypeVar
 
 import partialslip
-from partialslip.bars import LARGEST, Asked, asked
 from partialslip.cli.common import (
     Commands,
     add_columns,
@@ -21,8 +20,9 @@ from partialslip.cli.common import (
     origin,
     print_outcome,
 )
-from partialslip.errors import InputError
-from partialslip.methods import REFERENCES
+from partialslip.tools.bars import LARGEST, Asked, asked
+from partialslip.tools.errors import InputError
+from partialslip.tools.methods import REFERENCES
 
 _T = TypeVar("_T")
 
@@ -88,8 +88,8 @@ def _score(options: argparse.Namespace) -> int:
     if options.template:
         if options.file is not None:
             raise InputError(f"--template {options.file}: must go without a file: remove {options.file}")
+        from partialslip.codes.score.csvfile import csv_template
         from partialslip.halfplane import contact
-        from partialslip.score.csvfile import csv_template
 
         sys.stdout.write(csv_template(scene, contact(scene).a))
         return 0
@@ -97,9 +97,9 @@ def _score(options: argparse.Namespace) -> int:
         raise InputError("FILE: missing: must be a file with tractions; --template prints a table to fill in")
 
     from partialslip.cli.consoles import working
-    from partialslip.judge.reference import reference
+    from partialslip.codes.score.read import check
     from partialslip.report import write_run
-    from partialslip.score.read import check
+    from partialslip.run.judge.reference import reference
 
     file = Path(options.file)
     check(file)  # before a folder is created

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import partialslip
 from partialslip.cli.common import Commands, add_out, add_pdf, add_scene, check_output, study_ledger
 from partialslip.cli.findings import Findings, present
-from partialslip.errors import InputError
+from partialslip.tools.errors import InputError
 
 if TYPE_CHECKING:
     from partialslip.scene import Scene
@@ -71,8 +71,8 @@ def _size(options: argparse.Namespace) -> int:
     name = f"{scene.name}-size"
 
     def find(folder: Path) -> Findings:
-        from partialslip.batch.sweep import workers
         from partialslip.cli.consoles import counting
+        from partialslip.study.batch.sweep import workers
         from partialslip.study.size import sizes
 
         ledger = study_ledger(folder)
@@ -85,11 +85,11 @@ def _size(options: argparse.Namespace) -> int:
 
 def _evaluated(scene: "Scene", axes: "list[Axis]", entries: "list[Sized]", ledger: Path) -> Findings:
     """Draw, write and tabulate the ``entries`` of a ledger."""
-    from partialslip.output.files import csv_text, write_texts
-    from partialslip.plan import asks_for_stresses
     from partialslip.report.page import Section
+    from partialslip.scene.plan import asks_for_stresses
     from partialslip.study.size import sizes, stresses, tables
     from partialslip.study.size.figure import grid_svg, size_svg
+    from partialslip.tools.output.files import csv_text, write_texts
 
     texts, heading = {"cases.csv": csv_text(*sizes.case_table(axes, entries, scene.units))}, ""
     sections = list[Section]()

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices, Mask, runs, submatrix
+from partialslip.tools.arrays import Array, Indices, Mask, runs, submatrix
 
 Sides = npt.NDArray[np.int8]
 

@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Factored, Sides, Solution, solve_bounded
 from partialslip.friction.history import History, Steps, follow, resting, still
 from partialslip.friction.load_path import Missed, Path
 from partialslip.friction.path_following import Bounds, Follower, Leg, NothingSticksError, joined, noise
 from partialslip.scene.model import require_carried
+from partialslip.tools.arrays import Array, Mask
 
 _AT = 1e-12  # accuracy: distance from the bound, relative, at which a node is on it
 _LEFT = 0.9, 0.5  # accuracy: of a leg: where slip on the way is looked at

@@ -8,8 +8,6 @@ from functools import partial
 
 import numpy as np
 
-from partialslip.arrays import Array, Mask
-from partialslip.errors import InputError
 from partialslip.friction.active_set import Solution
 from partialslip.friction.coupled_step import LoadStep, Pivot, Relative, solve_near
 from partialslip.friction.even_gap import PARABOLA, EvenGap
@@ -18,6 +16,8 @@ from partialslip.friction.load_path import Path
 from partialslip.friction.pressing import FlatPunch, Pressed, Punches, Stages, disproportion
 from partialslip.friction.warm_start import Pair, Trail
 from partialslip.friction.zone_ends import CORNER
+from partialslip.tools.arrays import Array, Mask
+from partialslip.tools.errors import InputError
 
 _STICKS = 1e-9  # accuracy: relative tolerance of the friction bound and of lengths
 _TIMES = 8  # limit: iterations of the half-width in self-similar pressing

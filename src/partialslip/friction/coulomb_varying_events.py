@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from partialslip.arrays import Array, Mask, submatrix
 from partialslip.friction.active_set import Solution, spread
 from partialslip.friction.history import History, Steps, follow, resting
 from partialslip.friction.load_path import Missed, Path
 from partialslip.friction.normal import Presses
 from partialslip.friction.path_following import Bounds, Follower, Leg, joined
 from partialslip.scene.model import require_carried
+from partialslip.tools.arrays import Array, Mask, submatrix
 
 _REPEATS = 1e-12  # accuracy: change of q over a cycle, in f p, that is rounding of the events
 _SLIGHT = 1e-6  # accuracy: of the longest path of slip: none

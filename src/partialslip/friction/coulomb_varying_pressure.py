@@ -17,7 +17,6 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Mask, submatrix
 from partialslip.friction import coulomb_varying_events
 from partialslip.friction.active_set import Sides, Solution, solve_bounded, spread
 from partialslip.friction.history import History, follow, resting
@@ -26,6 +25,7 @@ from partialslip.friction.normal import Presses
 from partialslip.friction.path_following import NothingSticksError
 from partialslip.friction.warm_start import Trail
 from partialslip.scene.model import require_carried
+from partialslip.tools.arrays import Array, Mask, submatrix
 
 _INSIDE = 0.4  # accuracy: of the distance from the end at the beginning of a step: where the ratio L is taken
 _FEW = 3  # accuracy: nodes that touch on one side from which on L is linear, and not constant

@@ -18,13 +18,13 @@ import numpy as np
 import scipy.linalg as la
 from scipy.optimize import brentq
 
-from partialslip.arrays import Array, Mask, submatrix
-from partialslip.errors import PartialslipError
 from partialslip.friction.active_set import Sides, Solution, solve_bounded
 from partialslip.friction.history import resting
 from partialslip.friction.normal import press
 from partialslip.friction.partition import Factors, Forces, longest
 from partialslip.friction.warm_start import Pair, Trail
+from partialslip.tools.arrays import Array, Mask, submatrix
+from partialslip.tools.errors import PartialslipError
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _SAME = 1e-6  # accuracy: shear force of an actuator, in f P, that Newton's method begins with

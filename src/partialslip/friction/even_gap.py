@@ -18,8 +18,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from partialslip.arrays import Array
 from partialslip.scene import Hertz, Scene
+from partialslip.tools.arrays import Array
 
 _AT, _WEIGHTS = (np.polynomial.legendre.leggauss(48) + np.array([[1.0], [0.0]])) / 2
 _DENSE = np.linspace(0.0, 1.0, 257)  # accuracy: roots of places between steps of the curvature

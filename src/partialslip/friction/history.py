@@ -12,12 +12,12 @@ import numpy as np
 import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
-from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
 from partialslip.friction.limit import LIMIT, SLIPS, Cycles, ahead, limit, lost, room_of
 from partialslip.friction.load_path import Path
 from partialslip.friction.zone_ends import turning_points
-from partialslip.telling import tell
+from partialslip.tools.arrays import Array, Mask
+from partialslip.tools.telling import tell
 
 STEADY = 1e-6  # accuracy: change of q from cycle to cycle, relative to the range of q or to f p0, that counts as none
 # accuracy: change over a cycle, in f p, that ends cycles near enough to the limit for ratios of changes to tell it

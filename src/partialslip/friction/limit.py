@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from partialslip.arrays import Array, Mask
+from partialslip.tools.arrays import Array, Mask
 
 # accuracy: change of a node's q over a cycle, relative to the largest sum of |q|: rounding (seen: 2.7e-14)
 _REPEATS = 3e-14

@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.plan import Plan
 from partialslip.result.state import State
 from partialslip.scene import Pressing, Scene
+from partialslip.scene.plan import Plan
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 # limit: towards a steady state; 0.995 of the largest mean load takes 35, a large load before the cycles 300
 MOST_CYCLES = 200

@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Mask, submatrix
-from partialslip.errors import PartialslipError
 from partialslip.friction.active_set import Sides, Solution, inverse, solve_bounded
 from partialslip.friction.path_following import Bounds
 from partialslip.friction.tableau import Tableau
+from partialslip.tools.arrays import Array, Mask, submatrix
+from partialslip.tools.errors import PartialslipError
 
 _TURNS = 100  # limit: largest number of angles tried
 _LEVEL = 1e-14  # accuracy: moment, relative to that of the forces without sign, that is rounding

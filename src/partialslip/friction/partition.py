@@ -11,8 +11,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices, Mask, submatrix
 from partialslip.friction.active_set import Sides
+from partialslip.tools.arrays import Array, Indices, Mask, submatrix
 
 _KEPT = 2  # cost: factors
 _TAILS = 3  # cost: products of their last rows

@@ -18,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices, Mask
-from partialslip.errors import PartialslipError
 from partialslip.friction.active_set import Solution, inverse
 from partialslip.friction.tableau import Tableau
+from partialslip.tools.arrays import Array, Indices, Mask
+from partialslip.tools.errors import PartialslipError
 
 _EPS = float(np.finfo(float).eps)
 _AT = 1e-12  # accuracy: distance from the bound, relative: a thousand roundings of the forces that many events add up

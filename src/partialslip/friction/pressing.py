@@ -41,10 +41,10 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.special import hyp2f1
 
-from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Solution
 from partialslip.friction.even_gap import PARABOLA, EvenGap
 from partialslip.friction.zone_ends import StickInterval
+from partialslip.tools.arrays import Array, Mask
 
 _STICKS = 1e-9  # accuracy: relative tolerance of the friction bound
 _TELLING = 1e-9  # accuracy: tolerance of lengths, relative to the half-width

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.bars import BARS, LARGEST, Asked
 from partialslip.friction.history import STEADY, History
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.result import FRICTIONLESS, PATH_DEPENDENT, EndSlip, Regime, SteadyState
 from partialslip.scene import Scene
+from partialslip.tools.arrays import Array
+from partialslip.tools.bars import BARS, LARGEST, Asked
 
 # accuracy: from load point to load point: with fewer, p while a node slips is known roughly where it varies
 _FEW_STEPS = 8

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction.history import History, last_cycle_change
 from partialslip.friction.step_errors import Errors
 from partialslip.result.state import State
 from partialslip.scene import Scene
+from partialslip.tools.arrays import Array
+from partialslip.tools.bars import BARS, LEAST_SHEAR
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly

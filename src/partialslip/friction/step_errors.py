@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices
-from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.zone_ends import StickInterval
+from partialslip.tools.arrays import Array, Indices
+from partialslip.tools.bars import BARS, LEAST_SHEAR
 
 Errors = dict[str, float]
 

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from partialslip.bars import BARS
 from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
 from partialslip.friction.step_errors import Errors
 from partialslip.friction.work import last_cycle, told_missed
+from partialslip.tools.bars import BARS
 
 _CLOSES = 3  # cost: most cycles on which this is decided
 

@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.linalg as la
 
-from partialslip.arrays import Array, Indices, Mask
+from partialslip.tools.arrays import Array, Indices, Mask
 
 _TOGETHER = 48  # cost: pivots whose updates of V are added at once: as many as columns cost what an update costs
 

@@ -4,8 +4,8 @@ from collections.abc import Hashable
 
 import numpy as np
 
-from partialslip.arrays import Array, Mask
 from partialslip.friction.active_set import Sides, Solution
+from partialslip.tools.arrays import Array, Mask
 
 Pair = tuple[Solution, Solution]
 

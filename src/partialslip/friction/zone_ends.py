@@ -25,7 +25,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices, Mask
+from partialslip.tools.arrays import Array, Indices, Mask
 
 VERTICES = 5  # accuracy: of the fit
 # accuracy: of the fit that tells its error (measured on flat-rounded contacts: beside kinks it is several times more

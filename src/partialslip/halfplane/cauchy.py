@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array, Complex
+from partialslip.tools.arrays import Array, Complex
 
 _COUNT = 16  # accuracy: nodes on a panel
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)

@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch, punch_force
 from partialslip.halfplane.shape import Bound, Given, Shape
@@ -18,6 +16,8 @@ from partialslip.result import StickZone
 from partialslip.result.fields import AtPoints
 from partialslip.scene import FlatRounded, Hertz, Pressing, Scene
 from partialslip.scene.profiles import Curvature
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 _INSIDE = np.cos(np.arange(1, 200) / 200 * np.pi)  # places, in a, at which a hollow flat must be in contact
 # limit: Of the flat's half-width: narrower corners, which carry the load, are not told from the ends of the flat. With

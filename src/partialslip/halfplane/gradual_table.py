@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from partialslip.arrays import Array, Mask
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import stick_zones
 from partialslip.result import StickZone
+from partialslip.tools.arrays import Array, Mask
 
 PLACE = Path(__file__).with_name("gradual_table.json")
 _BESIDE = 1e-6  # accuracy: of a patch: a place as near to it is inside, as rounding may put it on the wrong side

@@ -3,8 +3,8 @@
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array
 from partialslip.halfplane.shape import Conditions, Shape
+from partialslip.tools.arrays import Array
 
 
 class HertzShape(Shape):

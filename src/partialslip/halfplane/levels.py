@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.loading import Loading, loading
@@ -17,6 +15,8 @@ from partialslip.halfplane.shape import places_between
 from partialslip.halfplane.turning import Followed, Reached, Turning
 from partialslip.result import PATH_DEPENDENT
 from partialslip.scene import Load
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 _ROUNDING = 1e-9  # accuracy: tolerance: lengths in a, tractions in f p0, slip in A f p0 a
 _PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]

@@ -7,9 +7,6 @@ from functools import cached_property
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.gradual import left_end_turns, turns_round
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.mean_bound import mean_load_bound
 from partialslip.halfplane.shape import Shape
@@ -17,6 +14,9 @@ from partialslip.halfplane.slip import Worn, dissipation, slip
 from partialslip.halfplane.steady import NARROWEST, TOO_STEEP, UNEVEN_FRICTION, drive, steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
 from partialslip.result import StickZone
+from partialslip.scene.gradual import left_end_turns, turns_round
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 _NOTHING = StickZone(0.0, 1.0, 1)
 _STAGES = 16  # accuracy: of the way from load point to load point
@@ -100,7 +100,7 @@ class Loading:
 
     def left_end_turns(self, half_width: float | None = None) -> bool:
         """Whether slip in the left slip zone reverses under gradual loading before the stick zone has ``half_width``
-        (default: the final one); see :func:`partialslip.gradual.left_end_turns`."""
+        (default: the final one); see :func:`partialslip.scene.gradual.left_end_turns`."""
         if not self._simple:
             return self.turns_round
         half_width = self.zone.half_width if half_width is None else half_width
@@ -155,7 +155,7 @@ class Loading:
 
     @cached_property
     def turns_round(self) -> bool:
-        """Whether slip reverses during half a cycle of gradual loading; see :func:`partialslip.gradual.turns_round`."""
+        """Whether slip reverses during half a cycle of gradual loading; see :func:`partialslip.scene.gradual.turns_round`."""
         if not self._simple:
             return self._reverses()
         return bool(turns_round(self.Qf, self.sf, self.zone.s, self.zone.centre, self.zone.half_width))

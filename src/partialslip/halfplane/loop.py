@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.turning import Turning, half_cycle
-from partialslip.shown import short
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+from partialslip.tools.shown import short
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 

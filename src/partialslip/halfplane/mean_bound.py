@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import stick_zones
 from partialslip.halfplane.traction import half_range, inside
 from partialslip.result import StickZone
+from partialslip.tools.arrays import Array
 
 _STAGES = 48  # accuracy: of the way from load point to load point, between which dq is looked at for extremes
 _ANGLES = 65  # accuracy: at which changes of the sign of dq are looked for

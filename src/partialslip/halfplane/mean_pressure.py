@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.shape import Shape
 from partialslip.scene import Scene
+from partialslip.tools.arrays import Array
 
 _ENDS = np.array([-1.0, 1.0])
 

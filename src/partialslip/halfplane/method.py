@@ -9,9 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.gradual import may_turn_round
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.levels import Levels, levels
 from partialslip.halfplane.loading import Loading, loading
@@ -24,12 +21,15 @@ from partialslip.halfplane.tractions import ExactTractions, sample
 from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.halfplane.varying import closed_form, require_closed_form, steady_cycle
 from partialslip.halfplane.varying_result import solve_varying
-from partialslip.plan import Plan, plan
 from partialslip.result import Clock, Regime, Result, Slip, SteadyState, StressAt, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene, Tabulated
+from partialslip.scene.gradual import may_turn_round
 from partialslip.scene.model import require_carried
-from partialslip.threads import one_thread
+from partialslip.scene.plan import Plan, plan
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+from partialslip.tools.threads import one_thread
 
 _SLIDES = "the contact slides: |Q| >= f P at a load point, or dQ >= 2 f P; there is no steady partial slip"
 _RATCHETS = "the mean of Q is above the bound for a steady state: the contact ratchets"

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.halfplane import contact, stick_zone
 from partialslip.scene import Scene
 from partialslip.scene.measured import refitted, smoothest
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 COPIES = 20  # limit: of the profile with other noise
 _WORTH = 2.0  # cost: smallest factor between smoothing lengths, and between scatters, for which another one is advised

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices
+from partialslip.tools.arrays import Array, Indices
 
 _NEAR = 6  # cost: kinks near a panel, summed directly
 _NARROWEST = 1e-13  # accuracy: width below which panels are not halved

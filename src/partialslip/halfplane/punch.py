@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.panels import Panels
 from partialslip.halfplane.shape import Shape
+from partialslip.tools.arrays import Array
 
 FEW = 24  # cost: flats up to which pressures are summed directly
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 _THIN = 1e-12  # accuracy: width of a slip zone below which the stiffness of the stick zone's end is that at this width
 _CHECKED = 1000  # limit: points at which a given pressure is checked

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array
 from partialslip.halfplane.shape import Rule, Shape, places_between, rule_between
 from partialslip.result import StickZone
+from partialslip.tools.arrays import Array
 
 # accuracy: Gauss points in a slip zone, and in each of its pieces: of the work, and of the rule that tells its error
 _NODES, _FEWEST = (32, 21), (6, 4)

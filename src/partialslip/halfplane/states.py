@@ -5,8 +5,6 @@ from typing import Protocol
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading, loading
@@ -15,6 +13,8 @@ from partialslip.halfplane.stress import Acting, Fields, Points, Shear, StressSt
 from partialslip.halfplane.turning import Turning
 from partialslip.result import StickZone
 from partialslip.scene import Load, Scene
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 _SLIDING = 1e-9  # limit: |Q|, relative to f P, that is closer to f P slides with q = f p
 _Sum = tuple[tuple[float, Acting], ...]

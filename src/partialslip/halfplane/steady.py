@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices, Mask
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.shape import NARROW, Conditions, Shape
 from partialslip.halfplane.slip import slips_on
 from partialslip.halfplane.traction import within_bound
 from partialslip.result import StickZone
+from partialslip.tools.arrays import Array, Indices, Mask
 
 NARROWEST = 1e-100  # limit: half-width: smaller stick zones are reported with this one
 TOO_STEEP = (

@@ -8,8 +8,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array, Complex
-from partialslip.friction.below import under_pressure, under_shear, under_tension
 from partialslip.halfplane.cauchy import Cauchy
 from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.loading import Loading
@@ -17,7 +15,9 @@ from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.turning import Followed, PartOfWay, Reached, Turning, half_cycle
 from partialslip.result import StickZone, SurfaceStress
+from partialslip.result.below import under_pressure, under_shear, under_tension
 from partialslip.result.fields import AtPoints
+from partialslip.tools.arrays import Array, Complex
 
 _SURFACE = 1e-30  # accuracy: depth of points on the surface, as a fraction of a
 _APART = 1e-12  # accuracy: distance below which breaks are merged, as a fraction of a

@@ -3,12 +3,12 @@
 import numpy as np
 from msgspec.structs import replace
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.scene import Scene, Tabulated
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 _LESS = 3.0  # accuracy: second order: the error at full spacing is a third of the change from twice the spacing
 _FEWEST = 5  # limit: points of a table

@@ -5,10 +5,10 @@ import functools
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array, Mask
 from partialslip.halfplane.panels import NODES, TO_COEFFICIENTS, clenshaw
 from partialslip.halfplane.shape import Shape, places_between
 from partialslip.result import StickZone
+from partialslip.tools.arrays import Array, Mask
 
 
 def adhered(x: npt.ArrayLike, a: float, dQ: float, dsigma: float) -> Array:

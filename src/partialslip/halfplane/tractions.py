@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.turning import Turning
 from partialslip.result import TractionAt
+from partialslip.tools.arrays import Array
 
 _POINTS, _FEWEST = 101, 4  # display: between neighbouring breaks; between breaks of which there are many
 

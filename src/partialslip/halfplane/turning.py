@@ -5,8 +5,6 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate_of
 from partialslip.halfplane.gradual_path.from_zero import MOST_LOADS, from_zero
@@ -20,6 +18,8 @@ from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import Worn
 from partialslip.halfplane.steady import UNEVEN_FRICTION
 from partialslip.result import StickZone
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a slip zone inside is not taken
 

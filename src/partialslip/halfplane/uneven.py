@@ -19,11 +19,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array, Indices
 from partialslip.halfplane.panels import Panels
 from partialslip.halfplane.punch import FEW, punch_force
 from partialslip.halfplane.shape import Shape
 from partialslip.scene.profiles import Curvature
+from partialslip.tools.arrays import Array, Indices
 
 # accuracy: length, in the size of the contact, below which ends of the contact are found linearly, above by logs
 _TINY = 1e-14

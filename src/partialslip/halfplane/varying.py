@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean_pressure import Mean, PressurePath, PressureStage, common
@@ -16,6 +14,8 @@ from partialslip.halfplane.slip import Worn, dissipation
 from partialslip.halfplane.steady import admissible
 from partialslip.result import EndSlip
 from partialslip.scene import Hertz, Scene
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 _STAGES = 16  # accuracy: of the way from load point to load point
 _NEAR = 0.5 ** np.arange(5, 15)  # from either end of a way: an end of the stick zone may turn round shortly before

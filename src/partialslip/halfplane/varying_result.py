@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.mean_pressure import PressurePath, common
@@ -14,9 +13,10 @@ from partialslip.halfplane.states import Around, sliding_state, varying, without
 from partialslip.halfplane.stress import SURFACE_REACH, along_surface
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.varying import Cycle, steady_cycle
-from partialslip.plan import Plan
 from partialslip.result import PATH_DEPENDENT, Clock, Regime, Result, Slip, SteadyState, StressAt, Traction, TractionAt
 from partialslip.scene import Scene
+from partialslip.scene.plan import Plan
+from partialslip.tools.arrays import Array
 
 _ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
 _STAGES = np.linspace(0, 1, 9)

@@ -3,14 +3,14 @@
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.gradual import turns_round
 from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.gradual_table import tabled
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.turning import Turning, half_cycle
 from partialslip.result import StickZone
+from partialslip.scene.gradual import turns_round
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 
 def stick_zone(

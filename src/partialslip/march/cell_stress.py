@@ -6,14 +6,14 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from partialslip.arrays import Array, Complex, Mask
-from partialslip.friction.below import under_shear
 from partialslip.friction.history import Steps
-from partialslip.friction.phases import Phases
-from partialslip.friction.piecewise import PiecewiseCauchy
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.stress import Fields, Integrals, Points, SlipZones, StressState
 from partialslip.march.pressing import NormalLoads
+from partialslip.result.below import under_shear
+from partialslip.result.phases import Phases
+from partialslip.result.piecewise import PiecewiseCauchy
+from partialslip.tools.arrays import Array, Complex, Mask
 
 _SLIPS = 1e-9  # accuracy: distance of |q| from f p, relative, at which a cell slips
 _WINDOW = 5  # accuracy: vertices of the polynomial through the resultants around a vertex
@@ -22,7 +22,7 @@ _LOAD_POINTS = np.array([0.0, 0.5])
 
 @dataclass(frozen=True)
 class CellStresses:
-    """Stresses at load steps and between them (:class:`partialslip.friction.phases.Phases`).
+    """Stresses at load steps and between them (:class:`partialslip.result.phases.Phases`).
 
     Parameters
     ----------

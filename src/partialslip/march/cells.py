@@ -5,9 +5,9 @@ import itertools
 import numpy as np
 from scipy.interpolate import PchipInterpolator, PPoly
 
-from partialslip.arrays import Array
 from partialslip.halfplane.shape import Shape
 from partialslip.scene import Friction
+from partialslip.tools.arrays import Array
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 # accuracy: distance, in widths of the wider cell, within which pairs of cells are integrated in closed form

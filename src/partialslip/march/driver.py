@@ -12,8 +12,6 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices
-from partialslip.bars import BARS
 from partialslip.friction.history import SHEARS, History
 from partialslip.friction.load_path import Path
 from partialslip.friction.regime import doubts
@@ -25,6 +23,8 @@ from partialslip.march.cells import off_cells, on_cells
 from partialslip.result import Clock, Pace, Result, Slip, SteadyState, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
+from partialslip.tools.arrays import Array, Indices
+from partialslip.tools.bars import BARS
 
 _LEFT = 3.0  # cost: times the seconds of the next mesh that must be left: finite elements follow in the same run
 

@@ -6,14 +6,14 @@ a convex problem with a certificate.
 
 from collections.abc import Callable
 
-from partialslip.allowance import Allowance
 from partialslip.march import similar, unlike
 from partialslip.march.driver import march
-from partialslip.plan import Plan
 from partialslip.result import Clock, Result
 from partialslip.result.state import State
 from partialslip.scene import Scene
-from partialslip.threads import one_thread
+from partialslip.scene.plan import Plan
+from partialslip.tools.allowance import Allowance
+from partialslip.tools.threads import one_thread
 
 
 @one_thread

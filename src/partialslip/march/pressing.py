@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.friction.load_path import unscaled_pressing
 from partialslip.friction.normal import Near, Presses
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.mean_pressure import Mean, common
 from partialslip.march.cells import forces
 from partialslip.scene import Scene
+from partialslip.tools.arrays import Array
 
 _STAGES = (0.25, 0.5, 0.75)  # accuracy: of the way between load points, at which the contact is looked up
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)

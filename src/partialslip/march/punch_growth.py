@@ -12,11 +12,11 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkm1
 
-from partialslip.arrays import Array
 from partialslip.friction.coupled_step import Relative, punched
 from partialslip.friction.even_gap import EvenGap
 from partialslip.friction.zone_ends import read_stick_zone
 from partialslip.march.cells import compliance, graded_cells
+from partialslip.tools.arrays import Array
 
 _END, _GROWTH = 1e-8, 0.05  # accuracy: size of cells at the punch's ends; growth
 # accuracy: size of cells in the middle, in the half-width of the stick zone: stages have the punch's tractions over the

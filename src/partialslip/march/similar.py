@@ -10,8 +10,6 @@ from functools import partial
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.bars import LEAST_SHEAR
 from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure
 from partialslip.friction.active_set import spread
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
@@ -38,10 +36,12 @@ from partialslip.march.cells import (
 )
 from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
-from partialslip.plan import Plan
 from partialslip.result import Clock, Result, StressAt, Traction
 from partialslip.result.state import State
 from partialslip.scene import Scene
+from partialslip.scene.plan import Plan
+from partialslip.tools.arrays import Array
+from partialslip.tools.bars import LEAST_SHEAR
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # accuracy: (cell size at the ends, in a; growth)
 _CELLS, _SOMEWHERE = 4.0, 0.5  # accuracy: a zone of fewer cells is unresolved: the error of an end in cells

@@ -11,8 +11,6 @@ from functools import partial
 import numpy as np
 from msgspec.structs import replace as changed
 
-from partialslip.arrays import Array
-from partialslip.bars import BARS, LEAST_SHEAR
 from partialslip.friction import coulomb_coupled
 from partialslip.friction.active_set import Solution, spread
 from partialslip.friction.even_gap import PARABOLA, even_gap
@@ -30,11 +28,13 @@ from partialslip.march.cells import friction_on, graded_cells, nearest, norm_par
 from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
-from partialslip.plan import Plan
 from partialslip.result import Clock, Traction, TractionAt
 from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip.scene.materials import Material
+from partialslip.scene.plan import Plan
+from partialslip.tools.arrays import Array
+from partialslip.tools.bars import BARS, LEAST_SHEAR
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (3e-4, 0.05), (1e-4, 0.025))  # accuracy: (cell size at the ends, in a; growth)
 _INNER = 8.0  # cost: size of cells at kinks over the size at the ends

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.judge.known import error_of
-from partialslip.judge.reference import reference
 from partialslip.result import RATCHETS, Result, Slip
 from partialslip.result.peak import peak_error, pressure_peaks
 from partialslip.run import Run
+from partialslip.run.judge.known import error_of
+from partialslip.run.judge.reference import reference
 from partialslip.scene import Tabulated
-from partialslip.units import LENGTHS, PREFIXES, SI, Dimension, Units
+from partialslip.scene.units import LENGTHS, PREFIXES, SI, Dimension, Units
 
 _DIGITS = 7  # display: significant
 

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.methods import METHODS
-from partialslip.output.svg import svg
 from partialslip.report.rows import shown_half_planes
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Friction, Scene, Tabulated
 from partialslip.scene.points import read_points
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+from partialslip.tools.methods import METHODS
+from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.origin import Made, made_now
-from partialslip.output.files import csv_text, write_files, write_texts
-from partialslip.output.page import write_pdf
-from partialslip.record import record
 from partialslip.report.loop import loop_csv
 from partialslip.report.page import Section, run_page
+from partialslip.report.record import record
 from partialslip.run import Run
-from partialslip.units import Dimension, Units
+from partialslip.scene.units import Dimension, Units
+from partialslip.tools.origin import Made, made_now
+from partialslip.tools.output.files import csv_text, write_files, write_texts
+from partialslip.tools.output.page import write_pdf
 
 _DIMENSIONS: dict[str, Dimension] = {"method": "1", "x": "m", "x_over_a": "1"}  # all other columns are stresses
 

@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.output.svg import svg
 from partialslip.report.answer import scale
 from partialslip.report.figure import draw_tractions, in_order
 from partialslip.result import Result
 from partialslip.scene import Friction
-from partialslip.units import Dimension, Units
+from partialslip.scene.units import Dimension, Units
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

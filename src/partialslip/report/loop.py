@@ -4,13 +4,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from partialslip.output.files import csv_text
-from partialslip.output.svg import svg
 from partialslip.report.answer import dissipated, scale
 from partialslip.result import Result
 from partialslip.result.plates import Plates
 from partialslip.run import Run
-from partialslip.units import Dimension
+from partialslip.scene.units import Dimension
+from partialslip.tools.output.files import csv_text
+from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -2,15 +2,15 @@
 
 from typing import TYPE_CHECKING
 
-from partialslip.judge import Comparison
-from partialslip.output.page import template
 from partialslip.report import answer, rows
 from partialslip.report.figure import in_order
 from partialslip.report.levels import Shown, draw_levels
 from partialslip.result import Result
 from partialslip.run import Run
+from partialslip.run.judge import Comparison
 from partialslip.scene import Scene
-from partialslip.units import SI
+from partialslip.scene.units import SI
+from partialslip.tools.output.page import template
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from partialslip.origin import Made, origin_lines
-from partialslip.output.page import render_page
 from partialslip.report import answer, rows
 from partialslip.report.answer import amounts
 from partialslip.report.figure import error_svg, mesh_svg, profile_svg, traction_svg
@@ -13,6 +11,8 @@ from partialslip.report.loop import loop_remark, loop_rows, loop_svg
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import Run
 from partialslip.scene import Scene
+from partialslip.tools.origin import Made, origin_lines
+from partialslip.tools.output.page import render_page
 
 
 @dataclass(frozen=True)

@@ -6,18 +6,18 @@ from collections.abc import Iterable, Iterator, Mapping
 import msgspec
 import numpy as np
 
-from partialslip.groups import grouped
-from partialslip.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
-from partialslip.judge.known import error_of
-from partialslip.plan import Plan
 from partialslip.report.answer import HALF_PLANES, NOT_ESTIMATED, dissipated, scale, with_error
 from partialslip.result import Cost, Result
 from partialslip.run import Run
+from partialslip.run.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
+from partialslip.run.judge.known import error_of
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
+from partialslip.scene.plan import Plan
 from partialslip.scene.plausible import implausible as implausible
+from partialslip.scene.units import SI, Dimension, Units
 from partialslip.scene.writing import scene_tables
-from partialslip.units import SI, Dimension, Units
+from partialslip.tools.groups import grouped
 
 HEADINGS = ("quantity", "unit", "reference", "value", "error", "estimate", "bar", "")
 _MEANING = {

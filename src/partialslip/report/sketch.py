@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from partialslip.output.svg import with_dark_mode
 from partialslip.report.answer import scale
 from partialslip.report.rows import setting
 from partialslip.scene import Scene
 from partialslip.scene.bodies import Body
 from partialslip.scene.profiles import FlatRounded
-from partialslip.units import Dimension, Units
+from partialslip.scene.units import Dimension, Units
+from partialslip.tools.output.svg import with_dark_mode
 
 _WIDTH, _HEIGHT = 470, 405  # display: of the drawing, in its units
 _MIDDLE, _LINE = 235.0, 205.0  # display: x of the contact's middle, y of the contact line

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.text import Text
 
-from partialslip.output.tables import print_lines, print_table
 from partialslip.report import rows
 from partialslip.report.answer import answer_heading, answers
 from partialslip.run import Run
+from partialslip.tools.output.tables import print_lines, print_table
 
 
 def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Sequence[str] = (), where: str = "") -> None:

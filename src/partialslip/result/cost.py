@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from partialslip.allowance import Allowance
 from partialslip.result.memory import PeakMeter
+from partialslip.tools.allowance import Allowance
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array, Indices, Mask
-from partialslip.errors import InputError
-from partialslip.shown import Short
-from partialslip.threads import one_thread
+from partialslip.tools.arrays import Array, Indices, Mask
+from partialslip.tools.errors import InputError
+from partialslip.tools.shown import Short
+from partialslip.tools.threads import one_thread
 
 _LOAD_POINTS = (0.0, 0.5)  # fixed: phases of load points 1 and 2
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 from msgspec.structs import replace
 
-from partialslip.arrays import Array
 from partialslip.scene import Scene
-from partialslip.shown import Short
+from partialslip.tools.arrays import Array
+from partialslip.tools.shown import Short
 
 
 @dataclass(frozen=True, repr=False)

@@ -6,11 +6,11 @@ from typing import Any, TypeVar
 import msgspec
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.result.cost import Cost
 from partialslip.result.plates import loop_area, stiffness
 from partialslip.result.result import EndSlip, Regime, Result
-from partialslip.shown import Short
+from partialslip.tools.arrays import Array
+from partialslip.tools.shown import Short
 
 JsonNumber = float | None  # None: NaN or infinite, which JSON cannot hold
 Numbers = tuple[JsonNumber, ...]

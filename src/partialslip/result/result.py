@@ -4,17 +4,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from partialslip.arrays import Array
-from partialslip.frame import frame
 from partialslip.result.cost import Clock, Cost
 from partialslip.result.fields import DeformedBody, Slip, StressAt, SurfaceStress
 from partialslip.result.plates import Plates
 from partialslip.result.state import State
 from partialslip.result.traction import Traction
-from partialslip.shown import Drawn
+from partialslip.tools.arrays import Array
+from partialslip.tools.frame import frame
+from partialslip.tools.shown import Drawn
 
 if TYPE_CHECKING:
-    from partialslip.frame import DataFrame
+    from partialslip.tools.frame import DataFrame
 
 PATH_DEPENDENT = "path-dependent: slip reverses "
 RATCHETS = "the contact ratchets: there is no steady state"

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.inputfile import read_bytes
 from partialslip.scene import Scene
-from partialslip.shown import Short
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+from partialslip.tools.inputfile import read_bytes
+from partialslip.tools.shown import Short
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly

@@ -4,8 +4,8 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from partialslip.arrays import Array, Mask
-from partialslip.shown import span
+from partialslip.tools.arrays import Array, Mask
+from partialslip.tools.shown import span
 
 Number = TypeVar("Number", float, Array)
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.result.fields import at_points
-from partialslip.shown import Short
+from partialslip.tools.arrays import Array
+from partialslip.tools.shown import Short
 
 
 class TractionAt(NamedTuple):

@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from partialslip.errors import InputError
 from partialslip.scene.table import Positive, Table
+from partialslip.tools.errors import InputError
 
 _SLENDEREST = 1e-4  # limit: smallest ratio of height to width, or of width to height
 

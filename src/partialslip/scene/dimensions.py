@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from partialslip.units import SI, Dimension, Units
+from partialslip.scene.units import SI, Dimension, Units
 
 _DIGITS = 10  # display: significant, of settings
 _BODIES = ("bodies.upper", "bodies.lower")

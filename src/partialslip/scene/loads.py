@@ -7,11 +7,11 @@ from typing import Annotated
 import msgspec
 import numpy as np
 
-from partialslip.arrays import Array, Indices
-from partialslip.errors import InputError
 from partialslip.scene.dimensions import shown
 from partialslip.scene.table import ROUGH, Positive, Table
-from partialslip.units import SI, Units
+from partialslip.scene.units import SI, Units
+from partialslip.tools.arrays import Array, Indices
+from partialslip.tools.errors import InputError
 
 _FEW, _MOST = 2, 1000  # limit: least and largest number of load points
 _LISTS = ("Q", "displacement", "Q_found", "sigma", "sigma_slope", "P", "M", "e")

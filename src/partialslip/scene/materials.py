@@ -5,8 +5,8 @@ from typing import Annotated, Literal, NamedTuple
 
 import msgspec
 
-from partialslip.errors import InputError
 from partialslip.scene.table import Positive, Table
+from partialslip.tools.errors import InputError
 
 _Nu = Annotated[float, msgspec.Meta(ge=-0.9, lt=0.5)]
 

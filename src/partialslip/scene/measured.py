@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, NoReturn
 import msgspec
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.scene.points import column_units, read_points
 from partialslip.scene.table import Positive, Table
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 if TYPE_CHECKING:
     from partialslip.scene import Scene

@@ -10,16 +10,16 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.scene.bodies import Bodies
 from partialslip.scene.loads import Load
 from partialslip.scene.materials import Material
 from partialslip.scene.profiles import FlatRounded, Hertz, Profile
 from partialslip.scene.settings import Effects, Fatigue, Fem
 from partialslip.scene.table import LARGEST, NO_TEXT, ROUGH, SMALLEST, STEEPEST, Table
-from partialslip.shown import Notebook, short
-from partialslip.units import UNITS, System, Units
+from partialslip.scene.units import UNITS, System, Units
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+from partialslip.tools.shown import Notebook, short
 
 # limit: Largest distance of P's line of action from x = 0, in sqrt(A R P): the rounding of x^2 is below 1e-9.
 _FARTHEST = 1e3

@@ -4,7 +4,7 @@ import math
 from typing import TYPE_CHECKING
 
 from partialslip.scene.profiles import Hertz
-from partialslip.units import SI, Dimension
+from partialslip.scene.units import SI, Dimension
 
 if TYPE_CHECKING:
     from partialslip.scene.model import Scene

@@ -4,11 +4,11 @@ import re
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
-from partialslip.inputfile import read_text
 from partialslip.scene.table import LARGEST, SMALLEST
-from partialslip.units import LENGTHS
+from partialslip.scene.units import LENGTHS
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+from partialslip.tools.inputfile import read_text
 
 _LARGEST = 20_000_000  # limit: bytes of a file of points
 _FEWEST = 10  # limit: points

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal, NamedTuple
 import msgspec
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.scene.measured import Measured
 from partialslip.scene.table import ROUGH, Positive, Table
 from partialslip.scene.table import STEEPEST as STEEPEST
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 _SHARP = 0.05  # accuracy: step of curvature, relative to the largest curvature, above which a point is a kink
 

@@ -12,13 +12,13 @@ from typing import Any, TypeVar, get_args
 
 import msgspec
 
-from partialslip.errors import InputError
-from partialslip.inputfile import read_text
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
 from partialslip.scene.dimensions import with_units
 from partialslip.scene.measured import ProfileFile, tabulated
-from partialslip.strictjson import JSON_KINDS, wanted
-from partialslip.units import SI, UNITS, Units
+from partialslip.scene.units import SI, UNITS, Units
+from partialslip.tools.errors import InputError
+from partialslip.tools.inputfile import read_text
+from partialslip.tools.strictjson import JSON_KINDS, wanted
 
 _LARGEST_FILE = 500_000  # limit: bytes; a profile and a cycle of 1,000 numbers each take 120,000
 _LONGEST = 1000  # limit: numbers in an array

@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 import msgspec
 
-from partialslip.shown import Short
+from partialslip.tools.shown import Short
 
 # limit: Numbers are zero or within these magnitudes, so that products and squares of a few numbers stay finite.
 SMALLEST, LARGEST = 1e-100, 1e100

@@ -8,7 +8,7 @@ import tomli_w
 
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import with_units
-from partialslip.units import SI
+from partialslip.scene.units import SI
 
 
 def scene_tables(scene: Scene) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """Verification of the methods on the shipped scenes, the catalogue of hard cases, and random scenes."""
 
-from partialslip.judge import Bar as Bar
+from partialslip.run.judge import Bar as Bar
 from partialslip.verify.case import REQUIREMENTS as REQUIREMENTS
 from partialslip.verify.case import Case as Case
 from partialslip.verify.case import CaseVerdict as CaseVerdict

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.bars import BARS
-from partialslip.groups import grouped
-from partialslip.judge import (
+from partialslip.result import RATCHETS, Result
+from partialslip.run import run
+from partialslip.run.judge import (
     ESTIMATE,
     NO_BAR,
     Bar,
@@ -26,12 +26,12 @@ from partialslip.judge import (
     estimate_verdicts,
     together,
 )
-from partialslip.judge.reference import reference as reference_of
-from partialslip.judge.reference import reference_among
-from partialslip.plan import plan
-from partialslip.result import RATCHETS, Result
-from partialslip.run import run
+from partialslip.run.judge.reference import reference as reference_of
+from partialslip.run.judge.reference import reference_among
 from partialslip.scene import Scene
+from partialslip.scene.plan import plan
+from partialslip.tools.bars import BARS
+from partialslip.tools.groups import grouped
 from partialslip_meshes.mesh import Mesh
 
 Meshes = Callable[[Scene], Sequence[Mesh]]
@@ -186,7 +186,7 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
 
 
 def conclusions(verdicts: Iterable[CaseVerdict]) -> dict[tuple[str, str], Conclusion]:
-    """Return what the ``verdicts`` amount to, by case and method (:func:`partialslip.judge.conclude`)."""
+    """Return what the ``verdicts`` amount to, by case and method (:func:`partialslip.run.judge.conclude`)."""
     groups = grouped(((verdict.case, verdict.method), verdict) for verdict in verdicts)
     return {
         group: conclude(

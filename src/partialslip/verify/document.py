@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
-from partialslip.bars import CERTIFICATE_BAR
-from partialslip.errors import InputError
-from partialslip.groups import grouped
-from partialslip.inputfile import read_text
-from partialslip.judge import P_BAR, Q_BAR, Outcome
-from partialslip.origin import origin_lines
-from partialslip.output.files import files_in
-from partialslip.output.page import render_page
-from partialslip.output.svg import svg
 from partialslip.report import rows
+from partialslip.run.judge import P_BAR, Q_BAR, Outcome
+from partialslip.tools.bars import CERTIFICATE_BAR
+from partialslip.tools.errors import InputError
+from partialslip.tools.groups import grouped
+from partialslip.tools.inputfile import read_text
+from partialslip.tools.origin import origin_lines
+from partialslip.tools.output.files import files_in
+from partialslip.tools.output.page import render_page
+from partialslip.tools.output.svg import svg
 from partialslip.verify.case import REQUIREMENTS, CaseVerdict, number_of, requirement_of
 from partialslip.verify.entry import Entry, Settings
 from partialslip.verify.formulas import PUBLICATIONS

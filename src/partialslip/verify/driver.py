@@ -10,23 +10,23 @@ from typing import Any
 
 from msgspec.structs import replace
 
-from partialslip.batch.ledger import Ledger, case_key, scene_content
-from partialslip.batch.sweep import SweepProgress, Task, work_through, workers
-from partialslip.errors import InputError
-from partialslip.inputfile import read_text
-from partialslip.judge import Conclusion, Outcome
-from partialslip.methods import REFERENCES
-from partialslip.output.files import write_texts
-from partialslip.output.page import check_pdf
-from partialslip.output.place import Request, placed
-from partialslip.plan import plan
 from partialslip.report.figure import traction_svg
 from partialslip.report.files import PDF, tractions_csv, write_page
 from partialslip.report.rows import Sheet, sheet
 from partialslip.report.sketch import sketch_svg
 from partialslip.result import Result
 from partialslip.run import compared
+from partialslip.run.judge import Conclusion, Outcome
+from partialslip.scene.plan import plan
 from partialslip.scene.writing import scene_toml
+from partialslip.study.batch.ledger import Ledger, case_key, scene_content
+from partialslip.study.batch.sweep import SweepProgress, Task, work_through, workers
+from partialslip.tools.errors import InputError
+from partialslip.tools.inputfile import read_text
+from partialslip.tools.methods import REFERENCES
+from partialslip.tools.output.files import write_texts
+from partialslip.tools.output.page import check_pdf
+from partialslip.tools.output.place import Request, placed
 from partialslip.verify.case import Case, CaseVerdict, Found, judge_case, solve_case, whole
 from partialslip.verify.document import Account, Study, document, read_study
 from partialslip.verify.entry import Entry, Settings, TitleBlock
@@ -265,7 +265,7 @@ def _settings(
 
 
 def _request(settings: Settings) -> dict[str, Any]:
-    """Return what a verification is asked for as plain data (:class:`partialslip.output.place.Request`)."""
+    """Return what a verification is asked for as plain data (:class:`partialslip.tools.output.place.Request`)."""
     return {"command": "verify", "settings": {**settings.asked, "only": settings.only, "ladder": settings.ladder}}
 
 

@@ -2,8 +2,8 @@
 
 import msgspec
 
-from partialslip.origin import Made
 from partialslip.report.rows import Sheet
+from partialslip.tools.origin import Made
 from partialslip.verify.case import CaseVerdict
 from partialslip.verify.formulas import Formula
 from partialslip.verify.ladder import Convergence

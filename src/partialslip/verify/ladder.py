@@ -7,7 +7,7 @@ change to the finest mesh is the largest one that follows from any of them,
 
     change_i = C h_i^p,   change = max_i(change_i h^p / h_i^p)
 
-with h the finest size and p the order that :mod:`partialslip.convergence` takes. The formal order is 1: elements of one
+with h the finest size and p the order that :mod:`partialslip.tools.convergence` takes. The formal order is 1: elements of one
 size do not resolve the ends.
 """
 
@@ -17,11 +17,11 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from partialslip.convergence import LOWEST, fitted_order, grid_convergence_index
-from partialslip.judge import compare
 from partialslip.result import Result
 from partialslip.run import run
+from partialslip.run.judge import compare
 from partialslip.scene import Scene
+from partialslip.tools.convergence import LOWEST, fitted_order, grid_convergence_index
 from partialslip.verify.case import Case
 
 SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # accuracy: in contact half-widths

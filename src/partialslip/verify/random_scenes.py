@@ -10,14 +10,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.errors import InputError
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import transition
 from partialslip.scene import Material, Scene, Tabulated
 from partialslip.scene.reading import parse_scene
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 PROFILES = ("hertz", "flat-rounded", "tabulated")
 KINDS = (

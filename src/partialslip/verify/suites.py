@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Literal, get_args
 
-from partialslip.errors import InputError
-from partialslip.judge import Bar
-from partialslip.judge.reference import reference
-from partialslip.methods import REFERENCES
+from partialslip.run.judge import Bar
+from partialslip.run.judge.reference import reference
 from partialslip.scene.reading import meant
+from partialslip.tools.errors import InputError
+from partialslip.tools.methods import REFERENCES
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.catalogue import hard_cases, shipped
 from partialslip.verify.random_scenes import draw, draw_varying, kind_of, varies
@@ -64,8 +64,8 @@ def suite(name: Suite, only: Sequence[str] = ()) -> Makers:
 def book() -> list[Case]:
     """Return the problems of the benchmark as cases, by every method that solves them; the reference is the method
     that their targets come from."""
-    from partialslip.benchmark import read_problems
-    from partialslip.benchmark.freeze import derivations
+    from partialslip.verify.benchmark import read_problems
+    from partialslip.verify.benchmark.freeze import derivations
 
     cases = []
     for number, problem in read_problems().items():

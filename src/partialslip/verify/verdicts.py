@@ -8,15 +8,15 @@ from pathlib import Path
 import msgspec
 from rich.console import Console
 
-from partialslip.errors import InputError
-from partialslip.groups import grouped
-from partialslip.inputfile import read_bytes
-from partialslip.judge import NO_BAR, Outcome
-from partialslip.origin import versions
-from partialslip.output.files import csv_text, json_text, write_texts
-from partialslip.output.tables import print_table
 from partialslip.report import rows
-from partialslip.strictjson import decoded
+from partialslip.run.judge import NO_BAR, Outcome
+from partialslip.tools.errors import InputError
+from partialslip.tools.groups import grouped
+from partialslip.tools.inputfile import read_bytes
+from partialslip.tools.origin import versions
+from partialslip.tools.output.files import csv_text, json_text, write_texts
+from partialslip.tools.output.tables import print_table
+from partialslip.tools.strictjson import decoded
 from partialslip.verify.case import CaseVerdict, conclusions, requirement_of
 from partialslip.verify.entry import Settings
 

@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array, Mask
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, between
 from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.stage import Loads, Stage, lasting
 from partialslip.halfplane.gradual_path.tractions import Tractions
+from partialslip.tools.arrays import Array, Mask
 
 _STEP, _REACH = 0.4, 39.0  # accuracy: of the trapezoidal rule, in the logarithm
 _NEAR = 1e-5  # accuracy: distance from a panel's end from which on points are judged: nearer, x has too few digits

@@ -15,8 +15,8 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import DEGREES, RESTS, SHARES, at_share, integrals, powers, spans
+from partialslip.tools.arrays import Array
 
 _WIDTHS = 4  # accuracy: of the zone, after which a break of its beginning is seen no more
 # accuracy: last coefficients of h above which a panel is halved, and panels that are not

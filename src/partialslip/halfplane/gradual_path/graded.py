@@ -5,8 +5,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.shape import double_exponential
+from partialslip.tools.arrays import Array
 
 _FEW, _LEAST = 200, 1e-300  # cost: points up to which the barycentric formula is faster; a distance that is not zero
 DEGREES = 40  # accuracy: coefficients, and nodes, of an interpolant

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle
 from partialslip.halfplane.gradual_path.phases import Retreating
 from partialslip.halfplane.gradual_path.retreat import Zone
+from partialslip.tools.arrays import Array
 
 # accuracy: stages between which extremes are looked for, and places at which extremes are found
 _STAGES, _PLACES = 24, 16

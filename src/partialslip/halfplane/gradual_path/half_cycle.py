@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import Smooth
 from partialslip.halfplane.gradual_path.inner import Parted
 from partialslip.halfplane.gradual_path.inner_way import SHUT
@@ -17,6 +16,7 @@ from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
 from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import steady_stick_zone, stick_zones
 from partialslip.halfplane.traction import half_range
+from partialslip.tools.arrays import Array
 
 # limit: most half cycles, and those in which the change does not become less: they do not settle
 _CYCLES, _STALLED = 60, 8

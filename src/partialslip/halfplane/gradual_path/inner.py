@@ -4,12 +4,12 @@ import itertools
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.inner_rates import A, B, L, R
 from partialslip.halfplane.gradual_path.inner_way import Way
 from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
+from partialslip.tools.arrays import Array
 
 _PATIENT = 24  # cost: steps without progress, for ways that are lost with fewer
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
+from partialslip.tools.arrays import Array
 
 L, A, B, R, Z = range(5)  # the four ends, and z0
 PANEL_NODES = 20  # accuracy: nodes of a panel

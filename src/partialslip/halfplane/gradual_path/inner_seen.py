@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array, Indices, Mask
 from partialslip.halfplane.gradual_path.inner_rates import LAST, RESTS, SHARES, WEIGHTS, A, B, L, Panel, R, Z
+from partialslip.tools.arrays import Array, Indices, Mask
 
 _APART = 1.0  # accuracy: of the way of an end in a panel: integrals over it are smooth at points so far from its end
 

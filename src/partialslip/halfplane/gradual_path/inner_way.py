@@ -12,7 +12,6 @@ import itertools
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.inner_rates import (
     DECAY,
     LAST,
@@ -34,6 +33,7 @@ from partialslip.halfplane.gradual_path.inner_rates import (
 from partialslip.halfplane.gradual_path.inner_seen import Seen
 from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.gradual_path.tractions import Tractions
+from partialslip.tools.arrays import Array
 
 ENDS = (L, A, B, R)
 _STEPS = 24  # limit: of Newton's method on a panel

@@ -3,11 +3,11 @@
 import itertools
 from typing import Protocol
 
-from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.drift import Drift
 from partialslip.halfplane.gradual_path.retreat import Retreat, Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
+from partialslip.tools.arrays import Array
 
 
 class Phase(Protocol):

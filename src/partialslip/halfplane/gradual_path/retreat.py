@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.tractions import Tractions
 from partialslip.halfplane.shape import Rule, rule_between
+from partialslip.tools.arrays import Array
 
 _STEPS = 60  # limit: of Newton's method
 _CLOSE = 1e-14  # accuracy: Newton step that is rounding

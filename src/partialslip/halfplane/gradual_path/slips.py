@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import spans
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, between
 from partialslip.halfplane.gradual_path.stage import Stage, lasting
 from partialslip.halfplane.slip import Worn
+from partialslip.tools.arrays import Array
 
 _COMMON = 0.25  # accuracy: least share of a stick zone that sticks from stage to stage
 # accuracy: Gauss points between breaks: of the work, and of the rule that tells its error

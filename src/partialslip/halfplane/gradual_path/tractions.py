@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.gradual_path.graded import Smooth, spans
 from partialslip.halfplane.shape import Shape
+from partialslip.tools.arrays import Array
 
 _LAST, _DECAYED = 4, 1e-10  # accuracy: coefficients in a window that have decayed where q is smooth
 _ANGLES = np.pi * (np.arange(24) + 0.5) / 24

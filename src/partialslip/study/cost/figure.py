@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from partialslip.output.svg import svg
 from partialslip.study.cost.ladder import CostPoint, by_series, errors_of, front, slopes
+from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,20 +10,20 @@ from typing import Any, NamedTuple
 import msgspec
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.batch.job import Job, Solved, solve_apart
-from partialslip.batch.ledger import Ledger
-from partialslip.convergence import power
-from partialslip.errors import InputError
-from partialslip.groups import grouped
-from partialslip.inputfile import read_text
-from partialslip.judge.reference import reference
-from partialslip.plan import plan
 from partialslip.report import Record
 from partialslip.result.record import ResultRecord
+from partialslip.run.judge.reference import reference
 from partialslip.scene import Scene
-from partialslip.strictjson import decoded
+from partialslip.scene.plan import plan
+from partialslip.study.batch.job import Job, Solved, solve_apart
+from partialslip.study.batch.ledger import Ledger
 from partialslip.study.cost.spending import Spending
+from partialslip.tools.arrays import Array
+from partialslip.tools.convergence import power
+from partialslip.tools.errors import InputError
+from partialslip.tools.groups import grouped
+from partialslip.tools.inputfile import read_text
+from partialslip.tools.strictjson import decoded
 
 SETTING = (
     "setting: accuracy asked of a, m and n, as a fraction of a (adapted meshes, march), or element size h (uniform "

@@ -5,8 +5,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from partialslip.batch.job import Job
-from partialslip.groups import grouped
+from partialslip.study.batch.job import Job
+from partialslip.tools.groups import grouped
 
 # cost: factor of a method's CPU seconds per digit of the accuracy, and per digit of the element size of uniform meshes,
 # unless a series has shown a larger one: both 1.0 to 2.4 in the ladder of hertz-small-tension, where meshes for one

@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from partialslip.output.svg import svg
 from partialslip.study.effects.worth import EffectStudy
+from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,14 +10,14 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from partialslip.errors import InputError
-from partialslip.judge import cell_errors
-from partialslip.output.files import csv_text
-from partialslip.plan import Effect, Plan, plan, reduced
 from partialslip.report.page import Section
 from partialslip.result import Regime, Result
 from partialslip.result.record import JsonNumber, record_of
+from partialslip.run.judge import cell_errors
 from partialslip.scene import Scene
+from partialslip.scene.plan import Effect, Plan, plan, reduced
+from partialslip.tools.errors import InputError
+from partialslip.tools.output.files import csv_text
 
 EFFECTS_SCHEMA = "partialslip/effects/1"
 SIZE = 0.02  # accuracy: default element size, in contact half-widths

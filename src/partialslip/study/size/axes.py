@@ -11,17 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from partialslip.batch.job import Job
-from partialslip.errors import InputError
-from partialslip.plan import asks_for_stresses
 from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
+from partialslip.scene.plan import asks_for_stresses
 from partialslip.scene.reading import meant, parse_scene
+from partialslip.scene.units import Dimension, Units
 from partialslip.scene.writing import scene_tables
+from partialslip.study.batch.job import Job
 from partialslip.study.size.case import compared_methods, half_plane_method
 from partialslip.study.size.law import BEYOND, CLEAR
-from partialslip.units import Dimension, Units
+from partialslip.tools.errors import InputError
 
 ACCURACY = "accuracy"  # label of a case besides the axes
 _COUNT = 9  # display: values of a range without a number of them

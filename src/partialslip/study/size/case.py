@@ -2,13 +2,13 @@
 
 from typing import TYPE_CHECKING
 
-from partialslip.batch.job import Job, Solved
-from partialslip.errors import InputError
-from partialslip.fatigue import hot_spots
-from partialslip.record import Record, record
+from partialslip.report.record import Record, record
 from partialslip.result import Result
 from partialslip.run import compared, run
 from partialslip.scene import Scene
+from partialslip.study.batch.job import Job, Solved
+from partialslip.study.fatigue import hot_spots
+from partialslip.tools.errors import InputError
 
 if TYPE_CHECKING:
     from partialslip_fem import Kept

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from partialslip.arrays import Array
-from partialslip.output.svg import svg
 from partialslip.study.size.case import EQUIVALENT, HALF_PLANE
 from partialslip.study.size.law import LEVELS, Kind, Needed, PointStatus, Sizes, Trend
 from partialslip.study.size.tables import SizeStudy, size_heading
+from partialslip.tools.arrays import Array
+from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import t as student
 
-from partialslip.arrays import Array
 from partialslip.study.size.case import HALF_PLANE
+from partialslip.tools.arrays import Array
 
 CLEAR = 10.0  # accuracy: a difference counts if it exceeds the mesh's error by this factor
 LEVELS = (1e-2, 1e-3, 1e-4)  # display: differences for which the sizes needed are told

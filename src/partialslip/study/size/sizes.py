@@ -10,22 +10,22 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from partialslip.arrays import Array
-from partialslip.batch.job import Job, Sharing
-from partialslip.batch.ledger import Ledger
-from partialslip.batch.sweep import SweepProgress, work_through
-from partialslip.errors import InputError
-from partialslip.fatigue import HotSpot
-from partialslip.fatigue.spots import SIGMA, off_by
-from partialslip.groups import grouped
-from partialslip.judge.known import error_of
-from partialslip.record import Record
+from partialslip.report.record import Record
 from partialslip.result.record import ResultRecord
+from partialslip.run.judge.known import error_of
 from partialslip.scene import Scene
+from partialslip.scene.units import Dimension, Units
+from partialslip.study.batch.job import Job, Sharing
+from partialslip.study.batch.ledger import Ledger
+from partialslip.study.batch.sweep import SweepProgress, work_through
+from partialslip.study.fatigue import HotSpot
+from partialslip.study.fatigue.spots import SIGMA, off_by
 from partialslip.study.size.axes import ACCURACY, Axis, cases
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solve_sized
 from partialslip.study.size.law import CLEAR, Sizes
-from partialslip.units import Dimension, Units
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+from partialslip.tools.groups import grouped
 
 DIFFERENCES = ("a", "p_max", "p", "m", "n", "q")
 _COARSER = 8.0  # accuracy: ratio of the accuracies of two successive meshes
@@ -144,7 +144,7 @@ def with_criteria(entries: Iterable[Sized], names: Sequence[str]) -> list[Sized]
 
 
 def stress_quantities(entries: Iterable[Sized]) -> tuple[str, ...]:
-    """Return the stresses of ``entries``, in the order of :func:`partialslip.fatigue.hot_spots`."""
+    """Return the stresses of ``entries``, in the order of :func:`partialslip.study.fatigue.hot_spots`."""
     return tuple(dict.fromkeys(key for entry in entries for key in entry.stresses.get(FEM, {})))
 
 

@@ -3,18 +3,18 @@
 import math
 from collections.abc import Iterable, Sequence
 
-from partialslip.errors import InputError
-from partialslip.fatigue import HotSpot
-from partialslip.fatigue.criteria import CRITERIA, RUIZ, chosen
-from partialslip.fatigue.places import OVER
-from partialslip.output.files import csv_text
 from partialslip.report.answer import scale, with_error
 from partialslip.scene import Fatigue, Scene
+from partialslip.scene.units import Dimension
+from partialslip.study.fatigue import HotSpot
+from partialslip.study.fatigue.criteria import CRITERIA, RUIZ, chosen
+from partialslip.study.fatigue.places import OVER
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE
 from partialslip.study.size.law import Sizes
 from partialslip.study.size.sizes import DIFFERENCES
 from partialslip.study.size.tables import Rows, SizeStudy, marked, mesh_share, size_text
-from partialslip.units import Dimension
+from partialslip.tools.errors import InputError
+from partialslip.tools.output.files import csv_text
 
 _SURFACE = "surface"
 _USUAL = "swt"  # display: the criterion of scenes that have no constants of a criterion

@@ -4,13 +4,13 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from partialslip.fatigue import HotSpot
-from partialslip.output.files import csv_text
 from partialslip.scene import Scene
+from partialslip.study.fatigue import HotSpot
 from partialslip.study.size.axes import Axis
 from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, Sized
 from partialslip.study.size.law import LEVELS, Kind, PointStatus, Sizes, Trend
 from partialslip.study.size.sizes import along, hot_spots_along, refused
+from partialslip.tools.output.files import csv_text
 
 Rows = list[tuple[str, ...]]
 _MARKS = {

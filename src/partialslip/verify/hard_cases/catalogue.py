@@ -5,8 +5,8 @@ Cases are grouped in families by what is hard: loads, load histories, bodies, me
 
 import textwrap
 
-from partialslip.groups import grouped
 from partialslip.scene.reading import load_scene, shipped_scenes
+from partialslip.tools.groups import grouped
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases import bodies, finite, histories, loads, meshes
 from partialslip.verify.hard_cases.scenes import Family

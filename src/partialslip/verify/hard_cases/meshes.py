@@ -5,11 +5,11 @@ from functools import partial
 
 import numpy as np
 
-from partialslip.arrays import Array
 from partialslip.halfplane.contact import contact
 from partialslip.halfplane.hertz import HertzShape
-from partialslip.judge import Bar
+from partialslip.run.judge import Bar
 from partialslip.scene import Scene
+from partialslip.tools.arrays import Array
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.scenes import family, hard_scene
 from partialslip_meshes.blocks import block

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from partialslip.halfplane.contact import contact
-from partialslip.judge import Bar
+from partialslip.run.judge import Bar
 from partialslip.scene import Scene
 from partialslip.scene.reading import parse_scene
 from partialslip.verify.case import Case

@@ -1,0 +1,101 @@
+"""Figures of the stick-zone map, legible in black and white: m/a solid, n/a dashed."""
+
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from partialslip.study.map.grid import Point, StickMap
+from partialslip.tools.arrays import Array
+from partialslip.tools.output.labels import CROSSING, label_lines
+from partialslip.tools.output.svg import svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SIZE = (5.2, 5.0)  # display: inches; narrow, with the legend below, to be read on a phone
+_HATCH, _ONE_STEP = "....", "m, n of one step"
+_TOUCHED = 0.02  # display: hatching fills every cell of the grid that a turn of slip touches: lines end at its border
+_STRIP = 0.025  # display: width of the strip of sliding beyond dQ = 2 f P
+
+
+def map_svg(data: StickMap) -> str:
+    """Return the map ``data`` as SVG: lines of equal m/a and n/a over dQ/(2 f P) and dsigma/(f p0)."""
+
+    def draw(figure: "Figure") -> Callable[[], None]:
+        axes = figure.subplots()
+        axes.set(xlabel="ΔQ/(2 f P)", ylabel="Δσ/(f p0)", xlim=(0, 1 + _STRIP), ylim=(0, data.grid.sf.max()))
+        axes.plot([], color="black", lw=1, label="m/a, stick from -m")
+        axes.plot([], color="black", lw=1, ls="--", label="n/a, stick to n")
+        axes.plot(*data.border[1:], color="black", lw=2.8, label="m = a in one step: large tension above")
+        axes.axvspan(1, 1 + _STRIP, color="0.7", lw=0, label="sliding")
+        grid = data.grid
+        region = grid.Qf, grid.sf, grid.turned
+        axes.contourf(*region, [_TOUCHED, 1.5], colors="none", hatches=[_HATCH])
+        axes.contour(*region, [_TOUCHED], colors="0.5", linewidths=0.6)
+        axes.fill_between([], [], [], hatch=_HATCH, fc="none", ec="black", lw=0, label=_ONE_STEP)
+        avoided = np.column_stack(data.border[1:])  # no label on the border, nor on the scene's loads
+        if data.point:
+            mark_point(axes, data.point)
+            avoided = np.vstack([avoided, data.point.place])
+        axes.tick_params(pad=9)  # room for the mark of a scene without dQ or dsigma, on an axis
+        axes.set_title(data.scene.name if data.scene else "hertz", loc="left", fontsize=10)
+        figure.legend(loc="outside lower left", ncols=2, frameon=False, fontsize=9)
+        found = (("m", data.m_lines), ("n", data.n_lines))
+        lines = [(of, at, np.column_stack([Qf, sf])) for of, some in found for at, Qf, sf in some]
+        return partial(draw_lines, axes, lines, avoided)
+
+    return svg(draw, _SIZE)
+
+
+def mark_point(axes: "Axes", point: Point) -> None:
+    """Mark the ``point`` of a scene, above all that the map shows."""
+    axes.plot(*point.place, "*", ms=15, mfc="white", mec="black", clip_on=False, zorder=6, label="the scene's loads")
+
+
+def draw_lines(
+    axes: "Axes", found: Iterable[tuple[str, float, Array]], avoided: Array, crossing: float = CROSSING
+) -> None:
+    """Draw labelled lines of equal m, solid, and n, dashed: ``found`` are m or n, its value, and points (k, 2). Labels
+    keep off the ``avoided`` points; ``crossing`` as for :func:`partialslip.tools.output.labels.label_lines`."""
+    lines, texts = [], []
+    for of, at, points in found:
+        axes.plot(*points.T, color="black", lw=1, ls={"m": "-", "n": "--"}[of])
+        lines.append(points)
+        texts.append(f"{of} {at:.1f}".replace("-", "−"))
+    label_lines(axes, lines, texts, avoided, crossing=crossing)
+
+
+def ends_svg(data: StickMap) -> str:
+    """Return the ends of the stick zone over dsigma a/dQ as SVG, one panel per constant dQ (the paper's last
+    figure). ``data`` is the map."""
+
+    def draw(figure: "Figure") -> None:
+        panels = figure.subplots(2, 2, sharex=True, sharey=True)
+        for number, axes in enumerate(panels.flat):
+            _draw_ends(axes, data, number)
+        for axes in panels[1]:
+            axes.set_xlabel("Δσ a/ΔQ")
+        for axes in panels[:, 0]:
+            axes.set_ylabel("x/a")
+        keys = panels[0, 0].get_legend_handles_labels()
+        figure.legend(*keys, loc="outside lower left", ncols=2, frameon=False, fontsize=9)
+
+    return svg(draw, _SIZE)
+
+
+def _draw_ends(axes: "Axes", data: StickMap, number: int) -> None:
+    """Draw the stick zone of one curve, and the transition from small to large tension."""
+    zone = data.curves.zone
+    Qf, sf, m, n = (values[number] for values in (data.curves.Qf, data.curves.sf, zone.m, zone.n))
+    ratio, turn = sf / (np.pi * Qf), data.turns.sf[number] / (np.pi * data.turns.Qf[number])
+    axes.fill_between(ratio, -m, n, color="0.88", lw=0, label="stick zone [-m, n]")
+    axes.plot(ratio, n, color="black", lw=1.4, ls="--", label="n/a")
+    axes.plot(ratio, -m, color="black", lw=1.4, label="-m/a")
+    axes.axvline(turn, color="black", lw=1, ls=":", label="from small (left) to large tension, in one step")
+    turned = data.curves.turned[number]
+    axes.fill_between(ratio, -1.05, 1.05, where=turned, hatch=_HATCH, fc="none", ec="0.6", lw=0, label=_ONE_STEP)
+    axes.set(title=f"ΔQ/(2 f P) = {Qf[0]:g}", xlim=(0, ratio[-1]), ylim=(-1.05, 1.05))
+    axes.title.set_fontsize(10)

@@ -1,0 +1,36 @@
+"""Seals: a checksum of the content of a JSON file under its last key, which tells whether the file was edited.
+
+The checksum is of the data, not of the text: keys in another order, other white space and 100000 in place of 1e5 change
+nothing. It guards against accidents. Whoever wants to forge a file can make the checksum anew.
+"""
+
+import hashlib
+import json
+from typing import Any
+
+from partialslip.tools.output.files import json_text
+
+KEY = "sum"
+
+
+def sealed_text(data: object) -> str:
+    """Return ``data``, of a type known to msgspec, as indented JSON text with its checksum as the last key."""
+    text = json_text(data)
+    body = text.rstrip().removesuffix("}").rstrip()
+    return f'{body},\n "{KEY}": "{_sum(text)}"\n}}\n'
+
+
+def edited(text: bytes | str, tree: dict[str, Any]) -> bool | None:
+    """Return whether the JSON ``text`` was changed since it was sealed; None if it has no seal.
+
+    The seal is removed from ``tree``, the content of the text as plain data.
+    """
+    found = tree.pop(KEY, None)
+    return None if found is None else found != _sum(text)
+
+
+def _sum(text: bytes | str) -> str:
+    """Return the checksum of a JSON object without its seal; whole numbers count as the floats that they equal."""
+    data = json.loads(text, parse_int=float)
+    data.pop(KEY, None)
+    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()[:16]
