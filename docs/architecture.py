@@ -14,10 +14,7 @@ if TYPE_CHECKING:
 
 ROOTS = ("partialslip", "partialslip_fem", "partialslip_meshes")
 # What nearly every package uses; its arrows would hide the others.
-EVERYWHERE = {
-    "errors", "inputfile", "strictjson", "seal", "arrays", "groups", "bars", "frame", "shown", "allowance", "units",
-    "origin", "convergence", "threads", "telling", "output", "__main__",
-}  # fmt: skip
+EVERYWHERE = frozenset({"tools", "__main__"})
 _SIZE = (7.4, 6.2)
 
 
@@ -27,14 +24,14 @@ def home(module: str) -> str:
     return rest[0] if first == "partialslip" and rest else first
 
 
-def imports() -> dict[str, set[str]]:
-    """What each package imports at run time, by package."""
+def imports(hidden: frozenset[str] = EVERYWHERE) -> dict[str, set[str]]:
+    """What each folder imports at run time, by folder, without those ``hidden``."""
     graph = grimp.build_graph(*ROOTS, exclude_type_checking_imports=True)
     found: dict[str, set[str]] = {}
     for module in graph.modules - {"partialslip"}:
         there = {home(each) for each in graph.find_modules_directly_imported_by(module)}
         found.setdefault(home(module), set()).update(there)
-    hidden = EVERYWHERE | {"partialslip"}
+    hidden = hidden | {"partialslip"}
     return {name: there - hidden - {name} for name, there in found.items() if name not in hidden}
 
 

@@ -1,4 +1,4 @@
-"""Write constants.md, the lists of the tuning constants: python docs/constants.py [FILE] (default: beside this file).
+"""Print the lists of the tuning constants: python docs/constants.py.
 
 The lists are made from the sources: a constant is a name in capitals to which a module gives numbers. The comment on
 its line, or the comment above it and its neighbours, begins with one of the words of :data:`KINDS`.
@@ -6,7 +6,6 @@ its line, or the comment above it and its neighbours, begins with one of the wor
 
 import ast
 import re
-import sys
 import textwrap
 from collections import Counter
 from pathlib import Path
@@ -28,8 +27,7 @@ says what a constant does:
 
 {kinds}
 
-A comment that begins with none of these words says that of the constants above it. The lists are made from the
-sources by `python docs/constants.py`; the tests compare them, and refuse a constant that does not say what it does.
+A comment that begins with none of these words says that of the constants above it.
 """
 
 
@@ -143,4 +141,4 @@ def page() -> str:
 
 
 if __name__ == "__main__":
-    Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).with_suffix(".md")).write_text(page(), "utf-8")
+    print(page(), end="")

@@ -31,6 +31,8 @@ def resolve(name):
             if not module.startswith(error.name or " "):
                 raise
             continue
+        except DeprecationWarning:  # a module's name of version 1.0, now that of a function
+            continue
         for part in parts[count:]:
             found = getattr(found, part)
         return found

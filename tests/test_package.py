@@ -1,6 +1,5 @@
 """What the package shows: its public names, found by help and tab completion, and imported when they are used."""
 
-import importlib
 import subprocess
 import sys
 
@@ -8,6 +7,7 @@ import pytest
 
 import partialslip
 from partialslip import halfplane
+from partialslip.tools.moved import NEW_NAMES
 
 
 def test_every_name_is_there_once_and_documented():
@@ -24,13 +24,26 @@ def test_every_name_is_there_once_and_documented():
 
 @pytest.mark.parametrize("name", ["run", "plan", "score", "export"])
 def test_a_function_is_not_hidden_by_its_module(name):
+    """Also under the module name of version 1.0, which warns, and leads to the same module."""
+    module = NEW_NAMES.get(name, name)
     code = f"import partialslip\nimport partialslip.{name}\nprint(callable(partialslip.{name}))"
-    code += f"\nfrom partialslip.{name} import {name}\nprint(partialslip.{name} is {name})"
-    assert callable(getattr(partialslip, name))
-    assert importlib.import_module(f"partialslip.{name}") is sys.modules[f"partialslip.{name}"]
-    if name == "run":
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-        assert done.stdout.split() == ["True", "True"]
+    code += f"\nfrom partialslip.{module} import {name}\nprint(partialslip.{name} is {name})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["True", "True"]
+
+
+@pytest.mark.parametrize("old", ["fatigue", "benchmark", "judge.verdict", "errors"])
+def test_module_names_of_version_1_0_warn_and_lead_to_the_same_module(old):
+    first, dot, rest = old.partition(".")
+    new = f"partialslip.{NEW_NAMES[first]}{dot}{rest}"
+    code = f"""import sys, {new}
+found = sys.modules["{new}"]
+name = found.__spec__.name
+import partialslip.{old}
+print(sys.modules["partialslip.{old}"] is found, found.__spec__.name == name)"""
+    done = subprocess.run([sys.executable, "-W", "always", "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["True", "True"]
+    assert f"DeprecationWarning: partialslip.{first} is now partialslip.{NEW_NAMES[first]}" in done.stderr
 
 
 def test_other_names():

@@ -5,7 +5,7 @@ import threading
 import pytest
 
 import partialslip
-from partialslip import telling
+from partialslip.tools import telling
 
 LONG = ["load.Q=[-1e4, 4e4]", "load.steps=3", "load.cycles=2", "fem.accuracy=1e-2", "material.upper={E=200e9, nu=0.3}"]
 

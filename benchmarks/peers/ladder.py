@@ -1,9 +1,9 @@
 """Other codes on the same scenes, over a ladder of meshes: ladder.py calculix|getfem|kratos [SCENE ...].
 
-The adapters of the benchmark (partialslip.verify.benchmark.codes) solve. Appends a line of JSON for every run to --out: scene,
-method, setting, element_size (in a; at the ends of the zones, where the mesh is graded to them), dofs, errors of a, m,
-n, p and q against the exact solution, CPU seconds of the processes, wall seconds, peak memory. Graded meshes are
-refined at the ends that the code's own run before gave; here the cost of that run counts. What is there already is not
+The adapters of the benchmark (partialslip.verify.benchmark.codes) solve. Appends a line of JSON for every run to --out:
+scene, method, setting, element_size (in a; at the ends of the zones, where the mesh is graded to them), dofs, errors of
+a, m, n, p and q against the exact solution, CPU and wall seconds of the processes, peak memory. Graded meshes are
+refined at the ends that the code's own run before gave; here the cost of that run counts. What is there is not
 run again.
 """
 

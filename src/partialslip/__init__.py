@@ -38,6 +38,8 @@ from importlib.util import find_spec
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from partialslip.tools.moved import keep_old_names
+
 if TYPE_CHECKING:
     from partialslip.codes.export import export as export
     from partialslip.codes.score import score as score
@@ -135,3 +137,4 @@ class _Package(ModuleType):
 
 
 sys.modules[__name__].__class__ = _Package
+keep_old_names()

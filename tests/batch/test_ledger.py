@@ -13,10 +13,10 @@ import pytest
 from refusing import line_of
 
 import partialslip
-from partialslip import origin
 from partialslip.study.batch import ledger as module
 from partialslip.study.batch.job import Job
 from partialslip.study.batch.ledger import Ledger, scene_content
+from partialslip.tools import origin
 from partialslip.tools.origin import checksum_of, source_checksum
 
 

@@ -172,7 +172,7 @@ def test_a_study_of_cost_writes_its_page(tmp_path, monkeypatch):
 
     found = [point("exact", 1e-15, 0.1)]
     found += [point("P4, adapted", 10.0**-k, float(k), dofs=1000 * k) for k in (2, 3, 4)]
-    monkeypatch.setattr(ladder, "measure_costs", lambda *_: ladder.MeasuredCosts(found, [], 0.0, 0.0))
+    monkeypatch.setattr(ladder, "measure_costs", lambda *_: ladder.MeasuredCosts(found, []))
     assert main(["study", "cost", "hertz-shear", "--set", "friction.f=0.4", "--out", str(tmp_path)]) == 0
     page = (tmp_path / "report.html").read_text("utf-8")
     assert page.count("<svg") == 3  # costs, phases, sketch

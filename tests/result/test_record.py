@@ -89,8 +89,7 @@ def test_numbers_that_json_does_not_have_are_null():
 
 
 def test_the_schema_that_is_published_is_that_of_the_types():
-    """python -c "import json; from partialslip.report.record import schema; print(json.dumps(schema(), indent=1))" writes
-    it."""
+    """Written by: import json; from partialslip.report.record import schema; print(json.dumps(schema(), indent=1))."""
     assert json.loads((DOCS / "reference" / "results.schema.json").read_text("utf-8")) == json.loads(
         json.dumps(schema())
     )

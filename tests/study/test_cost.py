@@ -9,12 +9,12 @@ from outline import texts
 
 import partialslip
 from partialslip.cli import main
-from partialslip.cli.cost import _left_out, _progress
+from partialslip.cli.cost import _answer, _left_out, _progress
 from partialslip.study.batch.job import Job, ProcessCost, solve_apart
+from partialslip.study.batch.job import _known as known
 from partialslip.study.batch.ledger import Ledger
 from partialslip.study.cost import ladder as cost
 from partialslip.study.cost.figure import errors_svg, phases_svg
-from partialslip.study.cost.spending import Spending
 
 SCENE = partialslip.load_scene("hertz-large-tension")
 
@@ -26,7 +26,7 @@ def point(series, cpu, error, dofs=1000):
 
 
 def test_the_ladder_is_of_every_kind():
-    cases = cost.ladder(SCENE)
+    cases = cost.ladder(SCENE, every=True)
     assert len({case.key for case in cases}) == len(cases)
     orders = {case.scene.fem.elements for case in cases}
     assert orders == {1, 2, 3, 4, 6}
@@ -54,7 +54,8 @@ def study(monkeypatch):
     def call(settings, seconds):
         solved = []
 
-        def apart(case):
+        def apart(case, repeats):
+            assert repeats >= 1
             solved.append(case.labels["setting"])
             spent, errors = float(seconds(solved)), dict.fromkeys(cost.ERRORS, 1e-3)
             found = {"cost": made.cost(spent, mesh=0.1), "counts": {"dofs": 10}}
@@ -75,78 +76,58 @@ def job(series, digits):
 
 
 def test_what_was_measured_is_not_measured_again(tmp_path, study):
-    """Medians are taken over the repeats of a setting."""
-    solved = study([("P4", 1)], len)
-    cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 1)
-    (found,), left, *_ = cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 3)
-    assert left == []
-    assert len(solved) == 3
-    assert found.cpu_s == 2.0
+    solved = study([("fem, adapted", 1)], len)
+    for repeats in (1, 3):
+        (found,), left = cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), repeats)
+        assert (len(solved), found.cpu_s, left) == (1, 1.0, [])
 
 
-def test_a_study_of_cost_says_what_runs_and_how_long_it_takes(tmp_path, study):
-    """The time left follows from an earlier repeat of the same setting, else from the mean."""
-    walls = {2: 1.0, 5: 9.0}
-    study([("P4, adapted", setting) for setting in walls], lambda solved: walls[solved[-1]])
-    told = []
-    cost.measure_costs(SCENE, Ledger(tmp_path / "ledger.jsonl"), 2, lambda *state: told.append(_progress(*state)))
-    assert told == [
-        "run 1 of at most 4: P4, adapted, 2",
-        "run 2 of at most 4: P4, adapted, 5, 3 s left",
-        "run 3 of at most 4: P4, adapted, 2, 10 s left",
-        "run 4 of at most 4: P4, adapted, 5, 9 s left",
-        "drawing",
-    ]
-
-
-def test_a_budget_leaves_out_what_is_predicted_not_to_fit(tmp_path, study):
-    """Settings cost 1, 4, 16 and 64 s in one series, and 1 s in another. Each repeat solves the same settings;
-    what was solved before counts, too."""
-    settings = [*(("dear", each) for each in (1, 2, 3, 4)), *(("cheap", each) for each in (1.5, 2.5))]
-    solved = study(settings, lambda solved: 1.0 if solved[-1] % 1 else 4.0 ** (solved[-1] - 1))
-    names, ledger = [], Ledger(tmp_path / "ledger.jsonl")
-
-    def measured(budget, repeats=1):
-        states = []
-        found, left, least, rest = cost.measure_costs(
-            SCENE, ledger, repeats, lambda *state: states.append(state), budget=budget
+def test_a_budget_ends_in_the_order_of_the_ladder(tmp_path, study):
+    """A setting that is begun is finished, the first one whatever it costs; what was solved before counts, too."""
+    study([("fem, adapted", each) for each in (1, 2, 3, 4)], lambda solved: 4.0 ** (solved[-1] - 1))
+    for budget, count in ((0.5, 1), (1.0, 1), (3.0, 2), (6.0, 3), (math.inf, 4)):
+        told, ledger = [], Ledger(tmp_path / "ledger.jsonl")
+        found, left = cost.measure_costs(
+            SCENE, ledger, 1, lambda *state, told=told: told.append(_progress(*state)), budget=budget
         )
-        names[:] = [(point.series, float(point.setting)) for point in found]
-        assert states[-1][:2] == (repeats * len(found), repeats * len(found))
-        assert not left or least > rest
-        return {(str(case.labels["series"]), case.labels["setting"]) for case in left}
-
-    left = measured(12.0)
-    assert {*names} == {("dear", 1), ("cheap", 1.5), ("dear", 2), ("cheap", 2.5)}
-    assert left == {("dear", 3), ("dear", 4)}
-    count = len(solved)
-    assert measured(12.0) == left
-    assert len(solved) == count  # the ledger knows them
-    assert measured(math.inf) == set()
-    assert measured(12.0, 2) == left
-    assert len(solved) == len(settings) + 4  # the second repeat is of what the first one ran
+        assert (len(found), len(left)) == (count, 4 - count)
+        assert told[-1] == "drawing"
+    assert told[0] == "setting 1 of 4: fem, adapted, 1"
+    assert _progress(1, 4, "march", 12.3) == "setting 2 of 4: march, 12 CPU s left"
 
 
-def test_a_budget_goes_from_cheap_to_dear_over_all_series():
-    """What has run predicts what waits: a series that begins with a fine accuracy waits for the coarse ones."""
-    series = {"fine": (6, 7), "coarse": (2, 3, 4), "uniform": (1, 2)}
-    jobs = [job(name, digits) for name, settings in series.items() for digits in settings]
-    spending, ran = Spending(jobs), []
-    while case := spending.following(100.0):
-        ran.append((case.labels["series"], case.labels["setting"]))
-        spending.ran(case, 3.0 ** case.labels["setting"], 0.5)
-    assert ran == [("uniform", 1), ("coarse", 2), ("uniform", 2), ("coarse", 3), ("coarse", 4)]
-    assert {each.labels["series"] for each in spending.waiting} == {"fine"}
-    assert spending.least == pytest.approx(3.0**6 + 0.5)  # as coarse has grown
+def test_the_ladder_takes_the_coarsest_setting_of_each_series_first():
+    names = [case.labels["series"] for case in cost.ladder(SCENE)]
+    assert names[:5] == list(cost.USUAL)
+    assert {*names} == {*cost.USUAL}
+
+
+def test_seconds_of_a_solution_are_the_smallest_that_are_known():
+    """Alone nothing tells how much of a solution is imports, unless it is long."""
+    assert not known([0.3])
+    assert not known([0.3, 0.2])
+    assert known([0.3, 0.2, 0.21])
+    assert known([9.0])
+
+
+def test_repeats_in_one_process_solve_the_same():
+    once, often = (solve_apart(Job(SCENE, ("exact", "march"), {}), repeats) for repeats in (1, 5))
+    assert often.process.again_cpu_s > 100 * once.process.again_cpu_s  # which solves nothing again
+    assert often.run.methods["march"].m == once.run.methods["march"].m
 
 
 def test_what_is_left_out_is_said_in_one_line():
-    left = [job("P4, adapted", 6), job("P4, adapted", 7), job("P1, uniform", 3)]
-    line = _left_out(cost.MeasuredCosts([], left, 53.21, 20.0), "60s")
-    assert line == (
-        "3 settings are left out: the cheapest of them is predicted to take 53.2 CPU s, and 20 s are left of --budget "
-        "60s: P4, adapted, 6 on; P1, uniform, 3 on"
-    )
+    left = [job("fem, adapted", 6), job("fem, adapted", 7), job("fem P1, uniform", 3)]
+    line = _left_out(cost.MeasuredCosts([], left), "60s")
+    assert line == "3 settings are left out, as --budget 60s is spent: fem, adapted, 6 on; fem P1, uniform, 3 on"
+
+
+def test_the_answer_is_the_cheapest_setting_that_does():
+    points = [point("march", 0.1, 1e-4), point("fem, adapted", 0.5, 1e-6), point("fem, adapted", 2.0, 1e-8)]
+    assert _answer(cost.front(points), 2e-5) == [
+        "m and n to 2e-05 a: fem, adapted, , in 0.5 CPU s", "best: 1.0e-08 a by fem, adapted, , in 2 CPU s"
+    ]  # fmt: skip
+    assert _answer(cost.front(points), 1e-9) == ["best: 1.0e-08 a by fem, adapted, , in 2 CPU s"]
 
 
 def test_a_ladder_is_of_the_methods_asked_for():
@@ -155,7 +136,7 @@ def test_a_ladder_is_of_the_methods_asked_for():
 
 
 def test_every_setting_says_what_it_is():
-    labels = [case.labels for case in cost.ladder(SCENE)]
+    labels = [case.labels for case in cost.ladder(SCENE, every=True)]
     assert {str(label["setting"]).split()[0] for label in labels if label["setting"]} == {"accuracy", "h"}
     assert [label["series"] for label in labels if not label["setting"]] == ["exact"]
 
@@ -188,7 +169,7 @@ def test_panels_of_phases_without_data_are_left_out():
 def test_seconds_have_plain_labels_that_do_not_touch():
     """A short axis has three labels in a decade, a long one the powers of ten alone."""
     short, long = (
-        texts(errors_svg([point("P4", least, 1e-3), point("P4", most, 1e-5)], [], "one"))
+        texts(errors_svg([point("P4", least, 1e-3), point("P4", most, 1e-5)], [], "one", 1e-4))
         for least, most in ((0.55, 3.9), (0.55, 800.0))
     )
     assert {"1", "2"} <= {*short}

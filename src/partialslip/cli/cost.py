@@ -30,23 +30,26 @@ def add(topics: Commands) -> None:
     cost = topics.add_parser(
         "cost",
         help="errors against CPU seconds, over a ladder of settings of every method",
-        description="Solve a scene with a ladder of settings of every method, one process per setting, as far as the "
-        "budget lets it, from cheap to dear: what has run predicts what the others take. Print errors against CPU "
-        "seconds. A stopped study continues.",
+        description="Solve a scene with a ladder of settings of every method, one process per setting, the coarsest "
+        "setting of each method first, until the budget is spent. Print errors of m and n against CPU seconds of the "
+        "solution. A stopped study continues.",
         examples=[
             "partialslip study cost hertz-large-tension",
             "partialslip study cost hertz-large-tension --with march,fem --budget 300s",
-            "partialslip study cost hertz-small-tension --budget none --repeats 3 --peers "
-            "benchmarks/peers/measured.jsonl",
+            "partialslip study cost hertz-small-tension --budget none --all --peers benchmarks/peers/measured.jsonl",
         ],
     )
     add_scene(cost)
     cost.add_argument("--with", dest="methods", metavar="METHODS", default="exact,march,fem",
                       help="methods of exact, march and fem, separated by commas (default: all)")  # fmt: skip
     cost.add_argument("--budget", metavar="SECONDS", default="60s",
-                      help="CPU seconds of all processes of a repeat, or none: the whole ladder (default: "
-                      "60s)")  # fmt: skip
-    cost.add_argument("--repeats", type=int, default=1, metavar="N", help="repeats of each setting (default: 1)")
+                      help="CPU seconds of all processes, after which no setting is begun, or none: the whole ladder "
+                      "(default: 60s)")  # fmt: skip
+    cost.add_argument("--all", dest="every", action="store_true",
+                      help="elements of all orders, a plain box, SuperLU, too")  # fmt: skip
+    cost.add_argument("--repeats", type=int, default=5, metavar="N",
+                      help="most solutions of a setting; fewer if the two smallest CPU seconds agree to 10 %% "
+                      "(default: 5)")  # fmt: skip
     cost.add_argument("--peers", metavar="FILE", help="results of other codes, JSON lines, to add to the diagram")
     add_out(cost, "results/NAME-cost[-HASH]")
     add_verbose(cost, "the settings that another one beats in cost and error, and how errors fall with unknowns")
@@ -67,36 +70,45 @@ def _cost(options: argparse.Namespace) -> int:
 
     methods = methods_of(options.methods, ladder.LADDERS)
     peers = ladder.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
-    known = {"peers": options.peers and Path(options.peers), "methods": sorted({*methods}), "budget": str(budget)}
+    known = {
+        "peers": options.peers and Path(options.peers),
+        "methods": sorted({*methods}),
+        "budget": str(budget),
+        "every": options.every,
+    }
 
     def usual() -> dict[str, object]:
-        return {"methods": sorted(ladder.LADDERS), "budget": str(seconds(options.default("budget")))}
+        return {"methods": sorted(ladder.LADDERS), "budget": str(seconds(options.default("budget"))), "every": False}
 
     def find(folder: Path) -> Findings:
         ledger = study_ledger(folder)
         with working(name) as tell:
             measured = ladder.measure_costs(
-                scene, ledger, options.repeats, lambda *state: tell(_progress(*state)), methods, budget
+                scene, ledger, options.repeats, lambda *state: tell(_progress(*state)), methods, budget, options.every
             )
-        return _evaluated(options, scene.name, measured, peers, ledger.path)
+        return _evaluated(options, scene, measured, peers, ledger.path)
 
     return present(options, "study cost", name, scene, find, known, usual)
 
 
 def _evaluated(
-    options: argparse.Namespace, name: str, measured: "MeasuredCosts", peers: "list[CostPoint]", ledger: Path
+    options: argparse.Namespace,
+    scene: "partialslip.Scene",
+    measured: "MeasuredCosts",
+    peers: "list[CostPoint]",
+    ledger: Path,
 ) -> Findings:
-    """Draw, write and tabulate what was ``measured`` of the scene ``name``."""
+    """Draw, write and tabulate what was ``measured`` of ``scene``."""
     from partialslip.report.page import Section
     from partialslip.study.cost import ladder
     from partialslip.study.cost.figure import errors_svg, phases_svg
     from partialslip.tools.output.files import csv_text, write_texts
 
-    found = measured.points
+    found, name = measured.points, scene.name
     phases = phases_svg(found, f"{name}: where the time goes")
     texts = {
         "cost.csv": csv_text(*ladder.cost_table([*found, *peers])),
-        "cost.svg": errors_svg(found, peers, f"{name}: error against cost"),
+        "cost.svg": errors_svg(found, peers, f"{name}: what accuracy costs", scene.fem.accuracy),
     } | ({"phases.svg": phases} if phases else {})
     front = ladder.front(found)
     best = {id(point) for point in front}
@@ -108,12 +120,12 @@ def _evaluated(
         if not math.isnan(of["CPU"])
     ]
     exponents = ["exponent against unknowns", "m, n", "q", "CPU"]
-    heading = f"{name}: what accuracy costs" + (f", medians of {options.repeats}" if options.repeats > 1 else "")
-    against = _against(found, peers)
+    heading = f"{name}: what accuracy costs"
+    answer, against = _answer(front, scene.fem.accuracy), _against(found, peers)
     if measured.left:
         against.append(_left_out(measured, options.budget))
     sections = [
-        Section("Errors and costs", against, texts["cost.svg"], "", head, rows, (1,)),
+        Section("Errors and costs", [*answer, *against], texts["cost.svg"], "", head, rows, (1,)),
         Section("Growth with the unknowns", (), phases, "", exponents, slopes),
     ]
     if options.verbose:
@@ -126,7 +138,20 @@ def _evaluated(
             f"{beaten} other settings cost more for the error: --verbose, or cost.csv",
         ]
     files = [ledger, *write_texts(ledger.parent, texts)]
-    return Findings(files, heading, [ladder.SETTING, *tables, *against], heading, sections)
+    return Findings(files, heading, [*answer, ladder.SETTING, *tables, *against], heading, sections)
+
+
+def _answer(front: "list[CostPoint]", asked: float) -> list[str]:
+    """Return the cheapest setting that reaches the accuracy ``asked`` for, and the best one, a line each."""
+    lines = []
+    for point in front:
+        if point.ends <= asked:
+            lines.append(f"m and n to {asked:.0e} a: {point.series}, {point.setting}, in {point.cpu_s:.2g} CPU s")
+            break
+    if front:
+        best = front[-1]
+        lines.append(f"best: {best.ends:.1e} a by {best.series}, {best.setting}, in {best.cpu_s:.2g} CPU s")
+    return lines
 
 
 def _left_out(measured: "MeasuredCosts", budget: str) -> str:
@@ -135,17 +160,14 @@ def _left_out(measured: "MeasuredCosts", budget: str) -> str:
 
     first = {case.labels["series"]: setting_name(case) for case in reversed(measured.left)}
     where = "; ".join(f"{name} on" for name in reversed(first.values()))
-    return (
-        f"{len(measured.left)} settings are left out: the cheapest of them is predicted to take "
-        f"{measured.least:.3g} CPU s, and {max(measured.rest, 0.0):.3g} s are left of --budget {budget}: {where}"
-    )
+    return f"{len(measured.left)} settings are left out, as --budget {budget} is spent: {where}"
 
 
-def _progress(done: int, total: int, setting: str, left: float) -> str:
+def _progress(done: int, total: int, setting: str, rest: float) -> str:
     """Return the progress of the study as text."""
     if done == total:
         return "drawing"
-    return f"run {done + 1} of at most {total}: {setting}{'' if math.isnan(left) else f', {left:.0f} s left'}"
+    return f"setting {done + 1} of {total}: {setting}{'' if math.isinf(rest) else f', {rest:.0f} CPU s left'}"
 
 
 def _row(point: "CostPoint", front: bool) -> list[str]:
@@ -163,7 +185,7 @@ def _against(found: "list[CostPoint]", peers: "list[CostPoint]") -> list[str]:
     """Return lines that compare the finite elements of partialslip with each peer."""
     from partialslip.study.cost.ladder import against
 
-    ours = [point for point in found if point.series.startswith("P")]
+    ours = [point for point in found if point.series.startswith("fem")]
     lines = []
     for series in dict.fromkeys(point.series.partition(",")[0] for point in peers):
         theirs = [point for point in peers if point.series.partition(",")[0] == series]

@@ -155,7 +155,7 @@ class Loading:
 
     @cached_property
     def turns_round(self) -> bool:
-        """Whether slip reverses during half a cycle of gradual loading; see :func:`partialslip.scene.gradual.turns_round`."""
+        """Whether slip reverses in half a cycle of gradual loading: :func:`partialslip.scene.gradual.turns_round`."""
         if not self._simple:
             return self._reverses()
         return bool(turns_round(self.Qf, self.sf, self.zone.s, self.zone.centre, self.zone.half_width))

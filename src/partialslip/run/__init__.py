@@ -190,8 +190,8 @@ def chosen_methods(scene: Scene, methods: object = None) -> tuple[str, ...]:
 
 def default_methods(scene: Scene) -> tuple[str, ...]:
     """Return the default methods for ``scene``: fem, and for half-planes the reference
-    (:func:`partialslip.run.judge.reference.reference`); beside finite bodies half-planes; with a rig exact and equivalent.
-    """
+    (:func:`partialslip.run.judge.reference.reference`); beside finite bodies half-planes; with a rig exact and
+    equivalent."""
     if not scene.material.alike:
         return ("fem",)
     if scene.bodies.equivalent is not None:
@@ -321,8 +321,8 @@ def _slid(scene: Scene, result: Result) -> Result:
 def solved_with_stresses(scene: AnyScene, method: str | None = None, progress: Progress = lambda _: None) -> Result:
     """Solve ``scene`` with the stresses in the bodies.
 
-    By default the method is the reference (:func:`partialslip.run.judge.reference.reference`), and march where exact does
-    not know q1 and q2: mean loads, for instance, under which the first cycles lock in what no closed form gives.
+    By default the method is the reference (:func:`partialslip.run.judge.reference.reference`), and march where exact
+    does not know q1 and q2: mean loads, for instance, under which the first cycles lock in what no closed form gives.
 
     Raises
     ------
@@ -366,8 +366,8 @@ def characterise(scene: AnyScene) -> Rig:
     """Find by finite elements what the bodies of ``scene``, a scene, name or path, add to half-planes: its rig.
 
     The rig depends on the bodies, their supports and materials, and on the profile only if a body is a pad. It is kept
-    for further calls with the same bodies. :func:`partialslip.result.rig.write_rig` writes it to a file, which a scene may
-    refer to.
+    for further calls with the same bodies. :func:`partialslip.result.rig.write_rig` writes it to a file, which a scene
+    may refer to.
 
     Raises
     ------

@@ -7,8 +7,8 @@ change to the finest mesh is the largest one that follows from any of them,
 
     change_i = C h_i^p,   change = max_i(change_i h^p / h_i^p)
 
-with h the finest size and p the order that :mod:`partialslip.tools.convergence` takes. The formal order is 1: elements of one
-size do not resolve the ends.
+with h the finest size and p the order that :mod:`partialslip.tools.convergence` takes. The formal order is 1: elements
+of one size do not resolve the ends.
 """
 
 import itertools

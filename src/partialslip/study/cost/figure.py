@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from partialslip.study.cost.ladder import CostPoint, by_series, errors_of, front, slopes
+from partialslip.study.cost.ladder import ADAPTED, CostPoint, by_series, front, slopes, start_s
 from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_USUAL = "P4, adapted"  # display: the series of the bars, if no other has more points
+_ROUNDING = 1e-16  # display: smallest error drawn
 _BARS = 4  # display: as many have room
 _SHORT = 30.0  # display: ratio of the ends of an axis up to which there is room for three labels in a decade
 _MARKS = ("o", "s", "^", "v", "D", "<", ">", "p", "h", "X", "P", "*", "d")
@@ -23,42 +23,42 @@ _LINES = ("-", "--", ":", "-.")
 _HATCHES = ("", "////", "....", "xxxx", "----", "\\\\\\\\", "oooo", "++++")
 
 
-def errors_svg(points: Sequence[CostPoint], peers: Sequence[CostPoint], title: str) -> str:
-    """Return errors of n and q against CPU seconds of the whole process as SVG.
+def errors_svg(points: Sequence[CostPoint], peers: Sequence[CostPoint], title: str, asked: float) -> str:
+    """Return the error of m and n against CPU seconds of the solution as SVG, legible at a width of 9 cm.
 
-    ``points`` are results of partialslip, ``peers`` of other codes.
+    ``points`` are results of partialslip, ``peers`` of other codes; ``asked`` is the accuracy that the scene asks for,
+    as a fraction of a.
     """
+    outside = {point.series for point in peers}
 
     def draw(figure: "Figure") -> None:
-        panels = figure.subplots(1, 2, sharex=True)
-        for axes, key, label in zip(panels, ("n", "q"), ("error of n, in a", "error of q, relative L2"), strict=True):
-            marks = cycle(_MARKS)
-            for number, (series, found) in enumerate(by_series([*points, *peers]).items()):
-                data = errors_of(found, key)
-                if len(data):
-                    outside = series in {point.series for point in peers}
-                    axes.loglog(
-                        *np.maximum(data, 1e-16).T,
-                        next(marks),
-                        ls="none" if outside else _LINES[number % len(_LINES)],
-                        color="black" if outside else _GREYS[number % len(_GREYS)],
-                        mfc="black" if outside else "white",
-                        ms=5,
-                        lw=1,
-                        label=series,
-                    )
-            best = errors_of(front(points), key)
-            axes.loglog(*best.T, color="0.8", lw=5, zorder=0, solid_capstyle="round", label="front (m and n)")
-            exact = [point.process_s for point in points if point.series == "exact"]
-            if exact:
-                axes.axvline(exact[0], color="black", lw=0.8, ls=(0, (1, 3)), label="the exact method")
-            axes.set(xlabel="CPU s of the process", ylabel=label)
-            axes.grid(which="major", color="0.92", lw=0.6)
-        _tick_plainly(panels[0])  # which shares its x axis
+        axes, marks = figure.subplots(), cycle(_MARKS)
+        for number, (series, found) in enumerate(by_series(each for each in [*points, *peers] if each.errors).items()):
+            style: dict[str, Any] = {"ls": _LINES[number % len(_LINES)], "color": _GREYS[number % len(_GREYS)]}
+            if series in outside:
+                style = {"ls": "none", "color": "black", "mfc": "black"}
+            data = np.array([[point.cpu_s, max(point.ends, _ROUNDING)] for point in found])
+            axes.loglog(*data.T, next(marks), **{"mfc": "white", "ms": 5, "lw": 1, **style}, label=series)
+        best = np.array([[point.cpu_s, max(point.ends, _ROUNDING)] for point in front([*points, *peers])])
+        if len(best):
+            axes.step(*best.T, where="post", color="0.82", lw=6, zorder=0, solid_capstyle="round", label="best of all")
+        axes.axhline(asked, color="black", lw=0.8, ls=(0, (6, 2)), zorder=0.5, label=f"asked for: {asked:.0e} a")
+        exact = [point.cpu_s for point in points if point.series == "exact"]
+        if exact:
+            axes.axvline(exact[0], color="black", lw=1, ls=(0, (1, 2)), label=f"exact: {exact[0]:.2g} s")
+        start = start_s(points)
+        if start > 0:
+            low = axes.get_xlim()[0]
+            axes.axvspan(low, start, color="0.93", lw=0, zorder=-1, label=f"start-up of a process: {start:.2g} s")
+            axes.set_xlim(left=low)
+        axes.set(xlabel="CPU s of the solution", ylabel="error of m and n, in a")
+        axes.grid(which="major", color="0.88", lw=0.5, zorder=-2)
+        axes.set_axisbelow(True)
+        _tick_plainly(axes)
         figure.suptitle(title, x=0.01, ha="left", fontsize=10)
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", frameon=False, fontsize=8)
+        figure.legend(loc="outside lower left", ncols=2, frameon=False, fontsize=8, handlelength=2.6)
 
-    return svg(draw, (10.5, 4.4))
+    return svg(draw, (4.4, 4.6))
 
 
 def phases_svg(points: Sequence[CostPoint], title: str) -> str:
@@ -66,7 +66,7 @@ def phases_svg(points: Sequence[CostPoint], title: str) -> str:
     measured, have them; empty without either."""
     series = {name: found for name, found in by_series(points).items() if "dofs" in found[0].counts}
     adapted = {name: found for name, found in series.items() if name.endswith("adapted")}
-    shown = max(adapted, key=lambda name: (len(adapted[name]), name == _USUAL), default="")
+    shown = max(adapted, key=lambda name: (len(adapted[name]), name == ADAPTED), default="")
     grown = {name: found for name, found in series.items() if len({point.counts["dofs"] for point in found}) > 1}
     panels: list[Callable[[Any], None]] = []
     if shown:

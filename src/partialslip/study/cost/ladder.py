@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
-from statistics import median
 from typing import Any, NamedTuple
 
 import msgspec
@@ -17,8 +17,6 @@ from partialslip.scene import Scene
 from partialslip.scene.plan import plan
 from partialslip.study.batch.job import Job, Solved, solve_apart
 from partialslip.study.batch.ledger import Ledger
-from partialslip.study.cost.spending import Spending
-from partialslip.tools.arrays import Array
 from partialslip.tools.convergence import power
 from partialslip.tools.errors import InputError
 from partialslip.tools.groups import grouped
@@ -30,27 +28,28 @@ SETTING = (
     "meshes, other codes)"
 )
 ERRORS = ("a", "m", "n", "p", "q")
+_Setting = tuple[str, dict[str, Any]]  # its name, and what it sets of finite elements
+ADAPTED = "fem, adapted"
 _ADAPTED: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
-    "P6": ({"order": 6}, (1e-6, 1e-7, 1e-8, 1e-9)),
-    "P4": ({"order": 4}, (1e-2, 1e-3, 1e-4, 2e-5, 1e-6, 1e-7)),
-    "P3": ({"order": 3}, (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)),
-    "P2": ({"order": 2}, (1e-2, 1e-3, 1e-4, 1e-5)),
-    "P1": ({"order": 1}, (1e-1, 3e-2, 1e-2, 3e-3)),
-    "P4, box": ({"order": 4, "far_field": "box"}, (1e-3, 1e-4, 1e-5, 1e-6)),
-    "P4, SuperLU": ({"order": 4, "factor": "superlu"}, (1e-2, 1e-3, 1e-4, 2e-5, 1e-6, 1e-7)),
+    ADAPTED: ({}, (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
+    "fem P6, adapted": ({"order": 6}, (1e-6, 1e-7, 1e-8, 1e-9)),
+    "fem P4, adapted": ({"order": 4}, (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)),
+    "fem P3, adapted": ({"order": 3}, (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)),
+    "fem P2, adapted": ({"order": 2}, (1e-2, 1e-3, 1e-4, 1e-5)),
+    "fem P1, adapted": ({"order": 1}, (1e-1, 3e-2, 1e-2, 3e-3)),
+    "fem, box": ({"far_field": "box"}, (1e-3, 1e-4, 1e-5, 1e-6)),
+    "fem, SuperLU": ({"factor": "superlu"}, (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)),
 }
+_UNIFORM = {"fem P1, uniform": 1, "fem P2, uniform": 2, "fem P4, uniform": 4}  # fixed: orders of the elements
+_SIZES = (0.16, 0.08, 0.04, 0.02, 0.01, 0.005)  # display: of the elements of uniform meshes, in a
+USUAL = ("exact", "march", ADAPTED, "fem P1, uniform", "fem P2, uniform")  # the series that answer, without --all
 _SPAN = 1.5  # display: factor of the unknowns below which no exponent is told: meshes for two accuracies may be one
 _LARGEST_FILE = 100_000_000  # limit: bytes
-_UNIFORM = {"P1": 1, "P2": 2, "P4": 4}  # fixed: orders of the elements of uniform meshes
-_SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)  # display: of their elements, in a
-
-
-_Setting = tuple[str, dict[str, Any]]  # its name, and what it sets of finite elements
 
 
 @dataclass(frozen=True)
 class CostPoint:
-    """Medians over the repeats of one setting.
+    """One setting, solved by a process of its own.
 
     Parameters
     ----------
@@ -59,7 +58,8 @@ class CostPoint:
     errors : dict of str to float
         Errors against the exact solution: a, m and n as fractions of a, p and q in relative L2 of cell averages.
     cpu_s, process_s, report_s : float
-        CPU seconds of the method, of the whole process without the report, and of writing the report.
+        CPU seconds of the method (the smallest of its repeats), of a whole process without the report, and of writing
+        the report.
     wall_s : float
         Wall seconds.
     peak_rss_mb : float
@@ -92,26 +92,10 @@ LADDERS = ("exact", "march", "fem")  # fixed: methods with a ladder
 
 
 class MeasuredCosts(NamedTuple):
-    """What was measured: ``points``; the settings that were ``left`` out, of which the cheapest is predicted to take
-    ``least`` CPU seconds, more than the ``rest`` of the budget."""
+    """What was measured: ``points``, and the settings that were ``left`` out when the budget was spent."""
 
     points: list[CostPoint]
     left: list[Job]
-    least: float
-    rest: float
-
-
-class _Run(NamedTuple):
-    """One repeat of a setting: its job, the job's key, and the name of the setting."""
-
-    job: Job
-    key: str
-    name: str
-
-    @classmethod
-    def of(cls, case: Job, repeat: int) -> "_Run":
-        job = replace(case, labels={**case.labels, "repeat": repeat})
-        return cls(job, job.key, setting_name(case))
 
 
 def setting_name(case: Job) -> str:
@@ -119,8 +103,9 @@ def setting_name(case: Job) -> str:
     return ", ".join(filter(None, map(str, case.labels.values())))
 
 
-def ladder(scene: Scene, methods: Collection[str] = LADDERS) -> list[Job]:
-    """Return the jobs for all settings of ``scene`` by ``methods``, series by series, the cheapest of each first.
+def ladder(scene: Scene, methods: Collection[str] = LADDERS, every: bool = False) -> list[Job]:
+    """Return the jobs for all settings of ``scene`` by ``methods``, the coarsest setting of each series first, then
+    the next of each; of the series in :data:`USUAL`, or of ``every`` series.
 
     Raises
     ------
@@ -135,12 +120,12 @@ def ladder(scene: Scene, methods: Collection[str] = LADDERS) -> list[Job]:
     if plan(scene).needs("friction"):
         found.append(_series(scene, "march", "march", [_asked(each) for each in (1e-3, 1e-4, 1e-5, 1e-6)]))
     for name, (fixed, accuracies) in _ADAPTED.items():
-        found.append(_series(scene, "fem", f"{name}, adapted", [_asked(each) for each in accuracies], fixed))
+        found.append(_series(scene, "fem", name, [_asked(each) for each in accuracies], fixed))
     for name, order in _UNIFORM.items():
-        sizes = _SIZES if order > 1 else (*_SIZES, 0.005)
-        settings: list[_Setting] = [(f"h = {size:g} a", {"size": size}) for size in sizes]
-        found.append(_series(scene, "fem", f"{name}, uniform", settings, {"order": order}))
-    return [case for series in found for case in series if case.methods[-1] in methods]
+        settings: list[_Setting] = [(f"h = {size:g} a", {"size": size}) for size in _SIZES]
+        found.append(_series(scene, "fem", name, settings, {"order": order}))
+    rungs = (case for rung in zip_longest(*found) for case in rung if case)
+    return [case for case in rungs if case.methods[-1] in methods and (every or case.labels["series"] in USUAL)]
 
 
 def _asked(accuracy: float) -> _Setting:
@@ -166,87 +151,54 @@ def measure_costs(
     progress: Callable[[int, int, str, float], None] = lambda *_: None,
     methods: Collection[str] = LADDERS,
     budget: float = math.inf,
+    every: bool = False,
 ) -> MeasuredCosts:
-    """Solve the ladder of ``scene``, one new process per job. Jobs in ``ledger`` are not solved again.
+    """Solve the ladder of ``scene``, one new process per setting. Settings in ``ledger`` are not solved again.
 
     Parameters
     ----------
     scene : Scene
     ledger : Ledger
     repeats : int
-        Each repeat runs the whole ladder, so that other load on the machine affects all settings alike.
+        Most solutions of a setting, whose CPU seconds are the smallest ones
+        (:func:`partialslip.study.batch.job.solve_apart`).
     progress : callable
-        ``progress(done, total, next, seconds_left)``, with the next setting as text. The seconds follow from the wall
-        seconds of the same setting in an earlier repeat, else from the mean of all settings, up to the budget; NaN at
-        first.
+        ``progress(done, total, next, rest)``, with the next setting as text and the rest of the budget.
     methods : collection of str
         Of :data:`LADDERS`.
     budget : float
-        CPU seconds of all processes of a repeat, those in ``ledger`` included. The first repeat runs from cheap to dear
-        over all series (:class:`partialslip.study.cost.spending.Spending`), until no setting is predicted to fit the
-        rest; the others repeat what it has run.
+        CPU seconds of all processes, those in ``ledger`` included: once they are spent no setting is begun.
+    every : bool
+        Whether to take all series, or those of :data:`USUAL`.
     """
-    cases = ladder(scene, methods)
-    runs = {setting_name(case): [_Run.of(case, repeat) for repeat in range(repeats)] for case in cases}
-    found, walls = list[Solved](), dict[str, float]()
-
-    def solve(ahead: Sequence[_Run], most: float) -> Solved:
-        """Solve the first of the runs ``ahead``, which may take ``most`` CPU seconds."""
-        usual = float(np.mean([*walls.values()])) if walls else math.nan
-        seconds = sum(walls.get(each.name, usual) for each in ahead if each.key not in ledger)
-        run = ahead[0]
-        progress(len(found), len(found) + len(ahead), run.name, min(seconds, most))
-        if run.key not in ledger:
-            ledger.add(run.key, solve_apart(run.job))
-        found.append(ledger.read(run.key, Solved))
+    cases, found, rest = ladder(scene, methods, every), list[Solved](), budget
+    for number, case in enumerate(cases):
+        if found and rest <= 0:
+            break
+        progress(number, len(cases), setting_name(case), rest)
+        if case.key not in ledger:
+            ledger.add(case.key, solve_apart(case, repeats))
+        found.append(ledger.read(case.key, Solved))
         if process := found[-1].process:
-            walls[run.name] = process.wall_s
-        return found[-1]
-
-    spending, rest, chosen = Spending(cases), budget, list[str]()
-    while case := spending.following(rest):
-        name = setting_name(case)
-        once = [name, *(each for each in map(setting_name, spending.waiting) if each != name)]
-        again = [runs[each][repeat] for repeat in range(1, repeats) for each in (*chosen, *once)]
-        entry = solve([*(runs[each][0] for each in once), *again], rest + budget * (repeats - 1))
-        spent = entry.process.cpu_s + entry.process.report_cpu_s if entry.process else 0.0
-        of_method = _method(entry.run).cost.cpu_s if entry.run else spent
-        spending.ran(case, of_method, max(spent - of_method, 0.0))
-        chosen.append(name)
-        rest -= spent
-    for repeat in range(1, repeats):
-        for number in range(len(chosen)):
-            ahead = [runs[each][repeat] for each in chosen[number:]]
-            ahead += [runs[each][later] for later in range(repeat + 1, repeats) for each in chosen]
-            solve(ahead, budget * (repeats - repeat))
-    progress(len(found), len(found), "", 0.0)
-    return MeasuredCosts(points(found), spending.waiting, spending.least, rest)
+            rest -= process.cpu_s + process.report_cpu_s + process.again_cpu_s
+    progress(len(cases), len(cases), "", rest)
+    return MeasuredCosts([_point(entry, entry.run) for entry in found if entry.run], cases[len(found) :])
 
 
-def points(entries: Iterable[Solved]) -> list[CostPoint]:
-    """Return medians of the ``entries`` of a ledger by setting."""
-    by_setting = grouped(
-        ((str(entry.labels["series"]), str(entry.labels["setting"])), entry) for entry in entries if entry.run
-    )
-    return [_point(series, setting, found) for (series, setting), found in by_setting.items()]
-
-
-def _point(series: str, setting: str, entries: Sequence[Solved]) -> CostPoint:
-    runs = [entry.run for entry in entries if entry.run]
-    comparison = next(iter(runs[0].comparison.values()), None)
-    costs = [_method(run).cost for run in runs]
-    processes = [entry.process for entry in entries if entry.process]
+def _point(entry: Solved, run: Record) -> CostPoint:
+    comparison = next(iter(run.comparison.values()), None)
+    cost, process = _method(run).cost, entry.process
     return CostPoint(
-        series=series,
-        setting=setting,
+        series=str(entry.labels["series"]),
+        setting=str(entry.labels["setting"]),
         errors={key: error for key in ERRORS if (error := comparison.errors[key]) is not None} if comparison else {},
-        cpu_s=median(cost.cpu_s for cost in costs),
-        process_s=median(process.cpu_s for process in processes),
-        report_s=median(process.report_cpu_s for process in processes),
-        wall_s=median(process.wall_s for process in processes),
-        peak_rss_mb=median(process.peak_rss_mb for process in processes),
-        phases={phase: median(cost.phases[phase] for cost in costs) for phase in costs[0].phases},
-        counts=_method(runs[0]).counts,
+        cpu_s=cost.cpu_s,
+        process_s=process.cpu_s if process else math.nan,
+        report_s=process.report_cpu_s if process else math.nan,
+        wall_s=process.wall_s if process else math.nan,
+        peak_rss_mb=process.peak_rss_mb if process else math.nan,
+        phases=dict(cost.phases),
+        counts=_method(run).counts,
     )
 
 
@@ -315,9 +267,9 @@ def _short(setting: str) -> str:
 
 
 def front(points: Iterable[CostPoint]) -> list[CostPoint]:
-    """Return the Pareto front of ``points``, cheapest first: CPU seconds of the process against errors of m and n."""
+    """Return the Pareto front of ``points``, cheapest first: CPU seconds of the solution against errors of m and n."""
     best, found = np.inf, []
-    for point in sorted((point for point in points if point.errors), key=lambda point: (point.process_s, point.ends)):
+    for point in sorted((point for point in points if point.errors), key=lambda point: (point.cpu_s, point.ends)):
         if point.ends < best:
             found.append(point)
             best = point.ends
@@ -392,6 +344,6 @@ def cost_table(points: Sequence[CostPoint]) -> tuple[list[str], list[list[float 
     return head, rows
 
 
-def errors_of(points: Iterable[CostPoint], key: str) -> Array:
-    """Return CPU seconds of the process and error in ``key``, (k, 2), of the ``points`` with an error in ``key``."""
-    return np.array([[point.process_s, point.errors[key]] for point in points if key in point.errors]).reshape(-1, 2)
+def start_s(points: Iterable[CostPoint]) -> float:
+    """Return the CPU seconds that a process takes beside the solution: the smallest; NaN without points."""
+    return min((point.process_s - point.cpu_s for point in points), default=math.nan)

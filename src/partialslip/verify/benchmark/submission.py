@@ -193,8 +193,8 @@ def add_answer(
 
 
 def write_submission(submission: Submission, folder: str | os.PathLike[str]) -> list[Path]:
-    """Write ``submission`` into ``folder``, as :func:`partialslip.verify.benchmark.read_submission` reads it. Returns the
-    paths."""
+    """Write ``submission`` into ``folder``, as :func:`partialslip.verify.benchmark.read_submission` reads it; return
+    the paths."""
     answers = {f"{key}.json": json_text(each) for key, each in submission.answers.items()}
     return write_texts(Path(folder), {META: _meta_text(submission.meta)} | answers)
 

@@ -1,4 +1,4 @@
-"""Codes that are Python packages: a script of :mod:`partialslip.verify.benchmark.codes` run by a Python that has the code."""
+"""Codes that are Python packages: a script in ``codes/scripts`` run by a Python that has the code."""
 
 import json
 import sys
