@@ -54,6 +54,17 @@ def test_a_size_that_is_solved_below_a_level_which_more_remains_than_is_no_answe
     assert str(trend(shallow, "m").needed[0]) == "never: 1.1 % remains"
 
 
+def test_the_answer_says_from_which_size_on():
+    """Interpolated, never, bounded from either side."""
+    found = trend(made_sizes(FLOOR + 0.3 * X**-1.5, 1e-6, remains=FLOOR, error=1e-6), "m")
+    assert tables._from_size(found.needed[0]) == f"from {found.needed[0].size:.4g} on"
+    assert tables._from_size(found.needed[1]) == "never (0.55 % remains)"
+    unknown = trend(made_sizes(16 * X**-2.0, 0.0, remains=None), "m")
+    assert tables._from_size(unknown.needed[2]) == "not up to 128"
+    small = trend(made_sizes(1e-5 * X**-2.0, 0.0, remains=None), "m")
+    assert tables._from_size(small.needed[0]) == f"from {X.min():.4g} on at the latest"
+
+
 def test_points_on_the_floor_have_no_part_in_the_exponent():
     """The last points of this sweep show an exponent of 0 to the eye."""
     x = np.geomspace(4, 16384, 13)

@@ -91,6 +91,7 @@ def _evaluated(scene: "Scene", axes: "list[Axis]", entries: "list[Sized]", ledge
     from partialslip.study.size.figure import grid_svg, size_svg
     from partialslip.tools.output.files import csv_text, write_texts
 
+    answer = list[str]()
     texts, heading = {"cases.csv": csv_text(*sizes.case_table(axes, entries, scene.units))}, ""
     sections = list[Section]()
     if len(axes) == 1:
@@ -100,6 +101,7 @@ def _evaluated(scene: "Scene", axes: "list[Axis]", entries: "list[Sized]", ledge
         texts |= {"stresses.csv": stresses.stresses_csv(study)} if study.spots else {}
         texts |= {name: size_svg(part) for name, part in (("size.svg", ends), ("stress.svg", stress)) if part.trends}
         heading = tables.size_heading(study)
+        answer = [tables.size_answer(study)] if study.trends else []
         found = [(each.title, tables.differences_table(ends, each)) for each in ends.models]
         found += [("Stresses", stresses.largest_table(study))]
         found += [
@@ -123,8 +125,9 @@ def _evaluated(scene: "Scene", axes: "list[Axis]", entries: "list[Sized]", ledge
     return Findings(
         [ledger, *write_texts(ledger.parent, texts)],
         heading,
-        [*sections, *lines],
+        [*answer, *sections, *lines],
         f"{scene.name}: size of the bodies",
-        [*figures, *sections, *([Section("Notes", lines)] if lines else [])],
+        [Section(title, found) for title, found in (("Answer", answer),) if found]
+        + [*figures, *sections, *([Section("Notes", lines)] if lines else [])],
         code=1 if any(entry.error and not sizes.at_limit(axes, entry) for entry in entries) else 0,
     )

@@ -8,7 +8,7 @@ from partialslip.scene import Scene
 from partialslip.study.fatigue import HotSpot
 from partialslip.study.size.axes import Axis
 from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, Sized
-from partialslip.study.size.law import LEVELS, Kind, PointStatus, Sizes, Trend
+from partialslip.study.size.law import LEVELS, Kind, Needed, PointStatus, Sizes, Trend
 from partialslip.study.size.sizes import along, hot_spots_along, refused
 from partialslip.tools.output.files import csv_text
 
@@ -25,6 +25,7 @@ _MARKS = {
     PointStatus.NO_LIMIT: "l",
 }
 _BY = "half-planes"  # heading of the names of models
+_ASKED = ("m", "n", "sigma_xx")  # of which the answer tells
 _LISTED = 3  # display: largest number of sizes that are listed
 _MEANINGS = {
     Kind.MEASURED: "measured: a solved size, where the difference is the level within the mesh's error",
@@ -123,6 +124,25 @@ def _listed_points(points: Sequence[str]) -> str:
 def size_heading(study: SizeStudy) -> str:
     """Return what was measured over which axis, as one line."""
     return f"{study.scene.name}: half-planes against finite elements, over {study.label}"
+
+
+def size_answer(study: SizeStudy) -> str:
+    """Return from which size on half-planes are within the first level, as one line: m, n and the largest sigma_xx."""
+    trends = {trend.quantity: trend for trend in study.models[0].trends}
+    asked = [key for key in _ASKED if key in trends] or [*trends][:1]
+    parts = [f"{key} {_from_size(trends[key].needed[0])}" for key in asked]
+    return f"half-planes are within {100 * LEVELS[0]:g} % by {study.label}: {', '.join(parts)}"
+
+
+def _from_size(needed: Needed) -> str:
+    """Return from which size on a level is kept, as text."""
+    if needed.kind is Kind.NEVER:
+        return str(needed).replace(": ", " (") + ")"
+    if needed.kind is not Kind.BOUND:
+        return f"from {size_text(needed.size)} on"
+    if needed.high == math.inf:
+        return f"not up to {size_text(needed.low)}" if needed.low else "not known"
+    return f"from {size_text(needed.high)} on at the latest"
 
 
 def differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str, ...], Rows]:
