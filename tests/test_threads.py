@@ -155,13 +155,14 @@ def test_limits_that_overlap(alone):
 
 def test_exact_stresses_take_one_thread(monkeypatch):
     """While a scene is solved and when stresses are asked for later; on busy cores several threads only cost."""
-    seen, integrals = [], Cauchy.__call__
+    seen = []
 
-    def watched(self, z):
-        seen.append(blas())
-        return integrals(self, z)
+    def watch(name):
+        integrals = getattr(Cauchy, name)
+        monkeypatch.setattr(Cauchy, name, lambda self, z: seen.append(blas()) or integrals(self, z))
 
-    monkeypatch.setattr(Cauchy, "__call__", watched)
+    watch("__call__")
+    watch("along")
     with threadpool_limits(3, user_api="blas"):
         exact = partialslip.run("hertz-shear", "exact", subsurface=True)["exact"]
         solving = len(seen)

@@ -25,7 +25,8 @@ _EQUAL = 1e-12  # accuracy: relative difference of rates that is rounding
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
 # accuracy: Gauss points, of a way and of a slip zone, and the fewest between kinks: of the work, and of the rule that
 # tells its error
-_STEPS, _BETWEEN = (16, 8), (3, 2)
+_STEPS, _BETWEEN = (20, 12), (3, 2)
+_PIECES = 8  # accuracy: most pieces between kinks that have as many points as a whole slip zone
 _SHARES = (1 - np.cos(np.linspace(0, np.pi, 14)))[1:-1] / 2  # of the way, at which points touch or open
 _ALONG = 32  # accuracy: stages of a way at which q is within its bounds
 _PANELS = 16  # accuracy: of the stick zone, on which bounds along the way are integrated
@@ -180,7 +181,7 @@ class Cycle:
                 inner = [kink for kink in kinks if low < kink < high]
                 angles = np.arccos(np.clip(np.unique([low, *inner, high]), -1, 1))[::-1]
                 half = np.diff(angles)[:, None] / 2
-                nodes, weights = np.polynomial.legendre.leggauss(min(count, max(2 * count // len(half), fewest)))
+                nodes, weights = np.polynomial.legendre.leggauss(min(count, max(_PIECES * count // len(half), fewest)))
                 angle = (angles[:-1, None] + half * (1 + nodes)).ravel()
                 y = np.cos(angle)
                 amount = np.abs(unit * change.slip(mean.scaled(now.places(y))))

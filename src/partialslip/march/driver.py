@@ -7,7 +7,7 @@ Scaled: lengths by the unit of the problem, forces by P, displacements by A P.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -70,8 +70,6 @@ class LastLevel:
     contact_ends : two of (float, float) or None
     notes : tuple of str
         On the load steps.
-    undetermined : mapping of str to str
-        Why quantities are not determined.
     """
 
     a: float
@@ -86,7 +84,6 @@ class LastLevel:
     counts: Mapping[str, int]
     contact_ends: tuple[tuple[float, float], tuple[float, float]] | None
     notes: tuple[str, ...] = ()
-    undetermined: Mapping[str, str] = field(default_factory=dict)
 
 
 class CellProblem(ABC, Generic[L]):
@@ -257,5 +254,4 @@ def _result(
         shares=shares,
         notes=found.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),
         contact_ends=answer.contact_ends,
-        undetermined=answer.undetermined,
     )

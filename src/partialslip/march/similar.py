@@ -168,6 +168,8 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         q1, q2 = (scene.P / frame.a * q / widths for q in (history.q1, history.q2)) if history else (0 * x, 0 * x)
         known = found.centre is not None
         several = scene.friction.varies and history and sticking_zones(history.bound, history.change) > 1
+        if several:
+            found = found._replace(undetermined={**found.undetermined, **dict.fromkeys("mn", _SEVERAL)})
         before = normal.first if anew else None
         tractions = CellTractions(frame, normal.second, before, level.vertices, q1, q2, known)
         counts = {
@@ -189,7 +191,6 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
             model="two half-planes, exact pressure, cells of constant shear",
             counts=counts,
             contact_ends=(normal.first.ends, normal.second.ends) if anew or frame.centre else None,
-            undetermined=dict.fromkeys("mn", _SEVERAL) if several else {},
             notes=(f"m, n: {_SEVERAL}: those of the one with the most room are told",) if several else (),
         )
 
@@ -202,7 +203,7 @@ def add_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock:
     else:
         stresses = sliding_state(scene) if scene.slides else without_shear(scene)
     if not stresses:
-        return replace(found, undetermined=no_stresses("the contact slides"))
+        return replace(found, undetermined={**found.undetermined, **no_stresses("the contact slides")})
     far = normal.frame.places([-SURFACE_REACH, SURFACE_REACH])
     breaks = np.unique([*far, *normal.frame.places([*normal.ends, *level.zone])])
     surface = along_surface(stresses.surface, breaks)
