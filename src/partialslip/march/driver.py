@@ -257,5 +257,5 @@ def _result(
         shares=shares,
         notes=found.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),
         contact_ends=answer.contact_ends,
-        undetermined=answer.undetermined,
+        undetermined={**found.undetermined, **answer.undetermined},
     )
