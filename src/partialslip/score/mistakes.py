@@ -74,7 +74,8 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
             else f"dq adds up to {scene.units.labelled(dQ, 'N/m', 3)}, not 0"
         )
     unsure = float(f_known) / seen if seen and isinstance(f_known, float) else 0.0
-    if seen is not None and not one and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
+    told = seen is not None and "p_1" not in result.undetermined  # else p1 + p is not known
+    if told and not one and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
         f = scene.friction.f
         notes.append(f"|dq|/(2 p) is {share * f:.4g} in the slip zones, but the scene's f is {f:g}: is f another?")
     return (*notes, *_pulls(scene, result, reference), *_places(scene, result, reference, x.factor))
