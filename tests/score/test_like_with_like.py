@@ -163,6 +163,11 @@ def test_half_of_a_contact_is_not_to_be_centred(tmp_path):
     assert "the table begins at x = " in notes
     assert "within the contact: give all of it, as shear differs from side to side" in notes
     assert "--centre" not in notes
+    reversed_shear = load_scene("hertz-shear")
+    x, p, dq = sampled(161, run(reversed_shear, ["exact"])["exact"])
+    cut = compared(reversed_shear, written(tmp_path / "t.csv", (x[half], p[half], dq[half])))[0]
+    assert "--factors" not in " ".join(cut.notes)  # the sums are half of those of the scene
+    x, p, dq = sampled(161)
     away = written(tmp_path / "t.csv", (x + 3 * EXACT.a, p, dq))
     assert "--centre auto puts x = 0 there" in " ".join(compared(SCENE, away)[0].notes)
 
