@@ -247,3 +247,13 @@ def test_columns_without_values_are_none(tmp_path):
     rows = "".join(f"{a!r},{b!r},,,{c!r}\n" for a, b, c in np.column_stack([x, p, dq]).tolist())
     (tmp_path / "t.csv").write_text(f"x,p,q1,q2,dq\n{rows}", "utf-8")
     assert compared(SCENE, tmp_path / "t.csv")[1].errors["q"] < 1e-10
+
+
+def test_what_is_left_outside_of_a_contact_is_no_contact(tmp_path):
+    """A pressure of 2.5e-6 p0 at every point of the table, as soft contact leaves it."""
+    x, p, dq = sampled(161)
+    found, judged = compared(SCENE, written(tmp_path / "t.csv", (x, p + 2.5e-6 * EXACT.p0, dq + 2.5e-7 * EXACT.p0)))
+    assert found.regime == EXACT.regime
+    errors = {each.quantity: each.error for each in judged.verdicts if each.quantity in ("a", "m", "n")}
+    assert len(errors) == 3
+    assert all(error < found.estimate[key] < 0.03 for key, error in errors.items())
