@@ -40,7 +40,7 @@ from boundary_bodies import added
 Array = np.ndarray[Any, np.dtype[Any]]
 
 OUT = Path(__file__).parent / "boundary.jsonl"
-DATA = Path(__file__).parents[2] / "src" / "partialslip" / "benchmark"
+DATA = Path(__file__).parents[2] / "src" / "partialslip" / "verify" / "benchmark"
 PROBLEMS = (
     "PS-02",
     "PS-18",

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from partialslip.friction import piecewise
+from partialslip.result import piecewise
 from partialslip.result.piecewise import PiecewiseCauchy
 
 DEPTHS = 10.0 ** np.arange(-12, 1)

@@ -165,6 +165,11 @@ def test_half_of_a_contact_is_not_to_be_centred(tmp_path):
     assert "the table begins at x = " in notes
     assert "within the contact: give all of it, as shear differs from side to side" in notes
     assert "--centre" not in notes
+    reversed_shear = load_scene("hertz-shear")
+    x, p, dq = sampled(161, run(reversed_shear, ["exact"])["exact"])
+    cut = compared(reversed_shear, written(tmp_path / "t.csv", (x[half], p[half], dq[half])))[0]
+    assert "--factors" not in " ".join(cut.notes)  # the sums are half of those of the scene
+    x, p, dq = sampled(161)
     away = written(tmp_path / "t.csv", (x + 3 * EXACT.a, p, dq))
     assert "--centre auto puts x = 0 there" in " ".join(compared(SCENE, away)[0].notes)
 
@@ -244,3 +249,13 @@ def test_columns_without_values_are_none(tmp_path):
     rows = "".join(f"{a!r},{b!r},,,{c!r}\n" for a, b, c in np.column_stack([x, p, dq]).tolist())
     (tmp_path / "t.csv").write_text(f"x,p,q1,q2,dq\n{rows}", "utf-8")
     assert compared(SCENE, tmp_path / "t.csv")[1].errors["q"] < 1e-10
+
+
+def test_what_is_left_outside_of_a_contact_is_no_contact(tmp_path):
+    """A pressure of 2.5e-6 p0 at every point of the table, as soft contact leaves it."""
+    x, p, dq = sampled(161)
+    found, judged = compared(SCENE, written(tmp_path / "t.csv", (x, p + 2.5e-6 * EXACT.p0, dq + 2.5e-7 * EXACT.p0)))
+    assert found.regime == EXACT.regime
+    errors = {each.quantity: each.error for each in judged.verdicts if each.quantity in ("a", "m", "n")}
+    assert len(errors) == 3
+    assert all(error < found.estimate[key] < 0.03 for key, error in errors.items())

@@ -65,6 +65,17 @@ def test_the_answer_says_from_which_size_on():
     assert tables._from_size(small.needed[0]) == f"from {X.min():.4g} on at the latest"
 
 
+def test_a_difference_that_grows_with_the_size_has_no_rest_that_remains():
+    """A specimen of constant width that is high as 160 widths bends under Q, and the contact rolls: p differs wholly,
+    which is not what remains of the 0.3 % at 16 a."""
+    x = np.array([4.0, 8.0, 16.0])
+    found = trend(made_sizes([1.4e-2, 6e-3, 3e-3], 1e-6, x, 1.0, 1e-4), "m")
+    assert found.floor is None
+    assert found.law is None
+    assert found.points[-1] is PointStatus.NO_LIMIT
+    assert Kind.NEVER not in {each.kind for each in found.needed}
+
+
 def test_points_on_the_floor_have_no_part_in_the_exponent():
     """The last points of this sweep show an exponent of 0 to the eye."""
     x = np.geomspace(4, 16384, 13)

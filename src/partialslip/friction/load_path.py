@@ -18,7 +18,8 @@ MOST_CYCLES = 200
 # accuracy: Change of q over a cycle, in f p, that ends cycles under fully reversed loads: a share of the accuracy,
 # within limits
 _SETTLED, _STILL = 5e-3, (1e-7, 1e-6)
-# accuracy: of the accuracy of a, m and n: the same under other loads; q may be off by 15 times that accuracy
+# accuracy: of the accuracy of a, m and n: the same under other loads, and in cycles that count as steady, however many
+# are asked for; q may be off by 15 times that accuracy
 _SHARE = 0.5
 # limit: tension beside Q, in f P over the scene's length: zones that stick narrow with it, down to rounding
 _STRONGEST = 1e4
@@ -149,8 +150,8 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None, on_pin: bool
         one_way = even and bool((changes[:, 0] >= scene.friction.f * changes[:, 3]).all())
     begin, *cycle = loads
     # under mean loads the change of a cycle falls with its number only, and little of q changes
-    accuracy = scene.fem.accuracy
-    near = min(max(_SETTLED * accuracy, _STILL[0]), _STILL[1]) if load.fully_reversed else _SHARE * accuracy
+    accuracy, steady = scene.fem.accuracy, _SHARE * scene.fem.accuracy
+    near = min(max(_SETTLED * accuracy, _STILL[0]), _STILL[1]) if load.fully_reversed else steady
     cycles, settled = (load.cycles, 0.0) if load.cycles else (MOST_CYCLES, near)
     return Path(
         tuple(cycle),
@@ -162,7 +163,7 @@ def load_path(scene: Scene, plan: Plan, start: State | None = None, on_pin: bool
         half=half,
         one_way=one_way,
         settled=settled,
-        steady=near,
+        steady=steady,
         actuator=actuator,
     )
 

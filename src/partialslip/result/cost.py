@@ -78,8 +78,8 @@ class Clock:
 
     @property
     def limited(self) -> bool:
-        """Whether there is an allowance."""
-        return self._allowance is not None
+        """Whether there is an allowance, and a finite one."""
+        return self.remaining() < math.inf
 
     def remaining(self) -> float:
         """Return the CPU seconds left; infinite without an allowance."""

@@ -41,7 +41,7 @@ class Columns(NamedTuple):
 
 
 def read_csv(
-    text: str, origin: str, chosen: Mapping[str, str] | None = None, units: Units = SI, anew: bool = False
+    text: str, origin: str, chosen: Mapping[str, str] | None = None, units: Units = SI, anew: bool | None = False
 ) -> Columns:
     """Read columns x, p (or Fn) and shear from a table with a header line, in SI units.
 
@@ -58,8 +58,8 @@ def read_csv(
         Expression for each column: a name or number (from 1) of a column of the table, or sums and differences.
     units : Units
         Units of the columns without a unit in brackets.
-    anew : bool
-        Whether the pressure varies: then p1 (or Fn1) is read, too.
+    anew : bool or None
+        Whether the pressure varies: then p1 (or Fn1) is read, too; None: if it is there.
 
     Raises
     ------

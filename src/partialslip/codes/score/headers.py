@@ -83,9 +83,9 @@ def headings(line: str) -> list[str]:
     return names
 
 
-def known(names: list[str], origin: str, anew: bool = False) -> dict[str, Wanted]:
-    """Find x, p or Fn, p1 or Fn1 if the pressure varies (``anew``), and the shear among the ``names`` of a header line,
-    in this order.
+def known(names: list[str], origin: str, anew: bool | None = False) -> dict[str, Wanted]:
+    """Find x, p or Fn, p1 or Fn1 if the pressure varies (``anew``; None: if it is there), and the shear among the
+    ``names`` of a header line, in this order.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def known(names: list[str], origin: str, anew: bool = False) -> dict[str, Wanted
     return _complete({name: each[0] for name, each in found.items() if each}, names, origin, anew)
 
 
-def selected(names: list[str], chosen: Mapping[str, str], origin: str, anew: bool = False) -> dict[str, Wanted]:
+def selected(names: list[str], chosen: Mapping[str, str], origin: str, anew: bool | None = False) -> dict[str, Wanted]:
     """Parse the expressions ``chosen`` for the columns of :func:`known`: names or numbers of columns, sums and
     differences.
 
@@ -122,15 +122,15 @@ def selected(names: list[str], chosen: Mapping[str, str], origin: str, anew: boo
     """
     if unknown := [name for name in chosen if name not in _OWN]:
         raise InputError(f"--columns {unknown[0]}: must be one of {', '.join(_OWN)}")
-    if not anew and (first := next((name for name in FIRST.values() if name in chosen), None)):
+    if anew is False and (first := next((name for name in FIRST.values() if name in chosen), None)):
         raise InputError(f"--columns {first}: must be left out, as the scene's pressure does not vary")
     wanted = {name: _made_of(chosen[name], names, origin) for name in _OWN if name in chosen}
     return _complete(wanted, names, origin, anew)
 
 
-def _complete(wanted: dict[str, Wanted], names: list[str], origin: str, anew: bool) -> dict[str, Wanted]:
-    """Check for x, one of p and Fn, its value at load point 1 if the pressure varies (``anew``), and the matching
-    shear, and put them in this order."""
+def _complete(wanted: dict[str, Wanted], names: list[str], origin: str, anew: bool | None) -> dict[str, Wanted]:
+    """Check for x, one of p and Fn, its value at load point 1 if the pressure varies (``anew``; None: if it is there),
+    and the matching shear, and put them in this order."""
     normal = [name for name in NORMAL if name in wanted]
     shears = [shear for shear in SHEAR_COLUMNS if set(shear) <= set(wanted)]
     shears = [shear for shear in shears if len(shear) == 2] or shears  # their difference is dq
@@ -146,7 +146,8 @@ def _complete(wanted: dict[str, Wanted], names: list[str], origin: str, anew: bo
     if anew and first not in wanted:
         at = f"{first}, {normal[0]} at load point 1, as the scene's pressure varies"
         raise InputError(f"{origin}: columns: must include {at}; name it with --columns {first}=...")
-    return {name: wanted[name] for name in ("x", *normal, *[first] * anew, *shears[0])}
+    pressures = (*normal, first) if anew or (anew is None and first in wanted) else normal
+    return {name: wanted[name] for name in ("x", *pressures, *shears[0])}
 
 
 def _made_of(text: str, names: list[str], origin: str) -> Wanted:

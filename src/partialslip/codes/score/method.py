@@ -130,7 +130,7 @@ def scored(scene: Scene, samples: Samples, name: str, origin: str) -> Result:
         counts={"points": len(x), "contact_nodes": last - first + 1},
         estimate=uncertainty,
         contact_ends=(contacts[0].ends, contacts[1].ends),
-        undetermined=dict.fromkeys("mn", why) if why else {},
+        undetermined={**(dict.fromkeys("mn", why) if why else {}), **_first(scene, samples)},
     )
 
 
@@ -167,6 +167,14 @@ def _contact(samples: Samples, p: Array, name: str, origin: str) -> SeenContact:
         wrong = "must have a contact of positive width; the ends found are in the wrong order"
         raise InputError(f"{origin}: {name}: {wrong}")
     return SeenContact(first, last, left, right)
+
+
+def _first(scene: Scene, samples: Samples) -> dict[str, str]:
+    """Why nothing is told of load point 1 where shear changes the pressure, and the table has no p1."""
+    if samples.p1 is not None or scene.mirrored:
+        return {}
+    why = "the table has no p1, the pressure at load point 1, which shear changes"
+    return dict.fromkeys(("P_1", "p_1", "left_1", "right_1"), why)
 
 
 def _why(stick: SeenStickZone | None, uncertainty: dict[str, float]) -> str:

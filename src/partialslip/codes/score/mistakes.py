@@ -50,9 +50,11 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
     x = _guess(result.a / reference.a, _others(_LENGTHS, scene.units.size("m"))) or _Guess("", 1.0)
     P, dQ = P * x.factor, dQ * x.factor
     load = _sum_of_dq(scene, reference)
-    p = _guess(P / P2, stresses) or _Guess("", 1.0)
+    cut = _cut(scene, result, reference)  # sums of a part tell no factor
+    none = _Guess("", 1.0)
+    p = none if cut else _guess(P / P2, stresses) or none
     share = 1.0 if seen is None else seen / scene.friction.f / p.factor  # of dq, in the dq that friction requires
-    q = _shear(dQ, share, seen is not None, load, scene, stresses)
+    q = none if cut else _shear(dQ, share, seen is not None, load, scene, stresses)
     dQ, share = dQ * q.factor, abs(share * q.factor)
     columns = zip(("x", "p", "dq"), (x, p, q), strict=True)
     notes = []
@@ -74,10 +76,11 @@ def mistakes(scene: Scene, result: Result, reference: Result) -> tuple[str, ...]
             else f"dq adds up to {scene.units.labelled(dQ, 'N/m', 3)}, not 0"
         )
     unsure = float(f_known) / seen if seen and isinstance(f_known, float) else 0.0
-    if seen is not None and not one and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
+    told = seen is not None and "p_1" not in result.undetermined  # else p1 + p is not known
+    if told and not one and abs(share - 1) > max(_FRICTION, _SIGMAS * unsure):
         f = scene.friction.f
         notes.append(f"|dq|/(2 p) is {share * f:.4g} in the slip zones, but the scene's f is {f:g}: is f another?")
-    return (*notes, *_pulls(scene, result, reference), *_places(scene, result, reference, x.factor))
+    return (*notes, *_pulls(scene, result, reference), *_places(scene, result, reference, x.factor, cut))
 
 
 def at_one_load_point(scene: Scene, result: Result) -> str:
@@ -139,13 +142,14 @@ def _shear(dQ: float, share: float, seen: bool, load: float, scene: Scene, stres
     return fits[0] if fits and abs(of - 1) > _LIKE else _Guess("", 1.0)
 
 
-def _places(scene: Scene, result: Result, reference: Result, factor: float) -> list[str]:
-    """Notes on the position of the contact and of the stick zone; ``factor`` corrects x."""
+def _places(scene: Scene, result: Result, reference: Result, factor: float, cut: str) -> list[str]:
+    """Notes on the position of the contact and of the stick zone; ``factor`` corrects x, ``cut`` says that the table
+    has a part of the contact only."""
     notes = []
     middle, expected = (sum(each.ends[1]) / 2 for each in (result, reference))
     off = middle / result.a - expected / reference.a
     known = max(result.estimate.get(key, 0.0) for key in ("a", "left", "right"))
-    if cut := _cut(scene, result, reference):
+    if cut:
         notes.append(cut)
     elif abs(off) > max(2 * known, 1e-9):
         place = f"the contact's middle is at x = {middle / result.a:.2g} a"

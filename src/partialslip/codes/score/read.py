@@ -45,9 +45,9 @@ def read_tractions(
     """Read tractions from ``file``.
 
     Formats: .csv, .txt, .tsv and .rpt tables; .frd and .dat of CalculiX; formats of meshio with point data p and dq, q,
-    or q1 and q2. The pressure at load point 1, p1, is read where the scene's pressure varies. Parameters as for
-    :func:`partialslip.score`; ``chosen`` are its ``columns``. Numbers are in the scene's units unless the file states
-    others.
+    or q1 and q2. The pressure at load point 1, p1, must be there where the scene's pressure varies, and may be where
+    shear changes it. Parameters as for :func:`partialslip.score`; ``chosen`` are its ``columns``. Numbers are in the
+    scene's units unless the file states others.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def read_tractions(
         If the file cannot be read or its content is not valid.
     """
     origin, suffix, faces = str(file), file.suffix.lower(), False
-    load, anew = scene.load, scene.presses_anew
+    load, anew = scene.load, True if scene.presses_anew else False if scene.mirrored else None
     load_points = LoadPoints(*load.ends, len(load.points), every=not load.in_phase)
     if scene.only_pressed:
         load_points = LoadPoints(0, 0, 1)
@@ -72,7 +72,7 @@ def read_tractions(
             found = read_frd(mesh, origin, at, load_points)
         else:
             found, faces = read_dat(content, mesh, origin, at, load_points)
-        if not anew:
+        if anew is False:
             del found["p1"]
         units = stated_units(mesh) or scene.units
         columns = _in_si(found, units)

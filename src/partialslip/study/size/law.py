@@ -23,6 +23,8 @@ _FEWEST = 3  # accuracy: points of a law
 _SHARE = 0.95  # accuracy: of confidence
 # accuracy: times the largest solved size: as far as a law is trusted; and the size: the farthest end of its interval
 BEYOND = 10.0
+# limit: times the largest difference of the sizes: a larger one at the size that stands for an infinite one has grown
+_GROWS = 3.0
 
 
 @dataclass(frozen=True)
@@ -274,11 +276,11 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
     law = _fit(size[fitted], falling[fitted], floor, sizes.limit) if floor and fitted.any() else None
     clear_but = PointStatus.SMALLER if law else PointStatus.NO_LAW if fitted.any() else PointStatus.FEW
     which = {
-        PointStatus.LIMIT: far & known,
+        PointStatus.LIMIT: far & known & bool(floor),
         PointStatus.FITTED: fitted & bool(law),
         clear_but: clear,
         PointStatus.UNKNOWN: near & np.isnan(mesh),
-        PointStatus.NO_LIMIT: sure & (floor is None or math.isnan(floor.error)),
+        PointStatus.NO_LIMIT: (sure | (far & known)) & (floor is None or math.isnan(floor.error)),
         PointStatus.FLOOR: sure,
         PointStatus.UNCLEAR: near,
     }
@@ -290,11 +292,14 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
 
 def _floor(size: Array, change: Array, mesh: Array, known: npt.NDArray[np.bool_], limit: float) -> Floor | None:
     """What remains at an infinite size: the change at ``limit``. From the largest size to there, the differences of
-    bodies fall with 1/size at least (docs/sizes/half-plane.md)."""
+    bodies fall with 1/size at least (docs/sizes/half-plane.md). None where it exceeds those of all sizes by far: of a
+    body that turns slender, which bends, the difference grows."""
     at, last = np.flatnonzero(known & (size >= limit)), np.flatnonzero(known & (size < limit))
     if not (at.size and last.size):
         return None
     value = float(change[at[-1]])
+    if abs(value) > _GROWS * np.abs(change[last]).max() + mesh[at[-1]]:
+        return None
     falling = abs(float(change[last[-1]]) - value) * float(size[last[-1]]) / limit
     return Floor(value, float(mesh[at[-1]]), falling)
 
