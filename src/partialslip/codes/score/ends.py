@@ -187,8 +187,9 @@ class _Reading:
         found = near._replace(low=min(near.low, low), high=max(near.high, high))  # no more than the bracket is known
         average = possible[0]
         far = self._far(average, high, 1)
-        # a far reading so far inside tells that the values fade out
-        if far is not None and (far.better(near) or far.best < low - 2 * self.spacing):
+        # a square root falls to half over these three points, the average of one to somewhat less
+        fades = bool(self.values[self.last - 1] < self.values[max(self.last - 4, 0)] / 4)
+        if far is not None and (far.better(near) or (fades and far.best < low)):
             found = self._blurred(average, found, far, high)
         elif far is not None:
             # what misleads halves with twice the distance, so that the end is off by twice what it moves, if it does
