@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from partialslip.score.method import scored
-from partialslip.score.read import read_tractions
 
 import partialslip
+from partialslip.codes.score.method import scored
+from partialslip.codes.score.read import read_tractions
 
 PAD = Path(__file__).parents[2] / "docs" / "scenes" / "finite-pad.toml"
 OFF = 0.04  # of a: how far shear moves the contact, to the left at load point 1, to the right at load point 2
