@@ -31,13 +31,12 @@ _STYLES = (("-", "o", "black"), ("-", "s", "black"), ("-", "^", "black"), ("--",
 _PAGE = """\
 # How fatigue criteria converge
 
-The tension at the trailing edge of the contact has an infinite slope: it falls like the square root of the distance
-from the edge. Finite elements therefore approach the peak slowly, and so do criteria at the surface. Here the exact
-values are known. `python docs/fatigue.py` makes this page.
+The tension at the trailing edge falls like the square root of the distance from the edge, so finite elements approach
+the peak slowly. Here the exact values are known. `python docs/fatigue.py` makes this page.
 
 The problem is `fretting-aluminium` (a cylindrical pad, f = 0.3, fully reversed Q and bulk tension). The criteria are
-Smith-Watson-Topper (SWT) and Fatemi-Socie (FS) with k = 1 and sigma_y = 330 MPa. The averages are over a half disc of
-50 um, {share:.2f} a, around the edge.
+Smith-Watson-Topper (SWT) and Fatemi-Socie (FS) with k = 1 and sigma_y = 330 MPa, also averaged over a half disc of 50
+um, {share:.2f} a, around the edge.
 
 | quantity | exact |
 |---|---|
@@ -45,10 +44,9 @@ Smith-Watson-Topper (SWT) and Fatemi-Socie (FS) with k = 1 and sigma_y = 330 MPa
 
 ## In the elements
 
-A finite element code reports stresses in its elements. The table has the relative error of the largest value at the
-centroids of the triangles, and of the average by area over the triangles whose centroid is in the half disc. The
-meshes are uniform along the contact and coarsen away from it. The size is `fem.size`; linear elements of this size are
-half as long as quadratic ones, so that both have about as many nodes.
+Relative error of the largest value at the centroids of the triangles, and of the average by area over the triangles
+whose centroid is in the half disc. The size is `fem.size`; linear elements are half as long, so that both have about as
+many nodes.
 
 {elements}
 
@@ -58,17 +56,17 @@ half as long as quadratic ones, so that both have about as many nodes.
 
 ## Recovered
 
-`result.stress_at` of finite elements integrates the tractions in the contact instead. The table has the relative error
-of the values at x = a on the surface, and of the averages, on the same meshes.
+`result.stress_at` integrates the tractions in the contact instead. Relative error at x = a on the surface, and of the
+averages, on the same meshes:
 
 {recovered}
 
 ## Slip zones from asymptotes
 
-The asymptotes at the edge predict a slip zone of K_T/(f K_N) in a cycle ([how](howto/fatigue.md)). The figure compares
-it with the exact one under Q alone, `hertz-shear`, and under Q and a tension in proportion, `hertz-small-tension`, at
-the edge where both add up. Under Q alone the prediction is 2.5 % too short at a tenth of the sliding load and
-{half:.0f} % at half of it. In the limit it is half of the exact length.
+The slip zone predicted by [asymptotes](howto/fatigue.md), K_T/(f K_N), and the exact one: under Q alone, `hertz-shear`,
+and under Q and a tension in proportion, `hertz-small-tension`, at the edge where both add up. Under Q alone the
+prediction is 2.5 % too short at a tenth of the sliding load and {half:.0f} % at half of it. In the limit it is half of
+the exact length.
 
 ![Predicted and exact length of the slip zone over the load](fatigue/slip-zones.svg)
 """

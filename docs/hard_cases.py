@@ -24,14 +24,13 @@ MEASURED = DOCS.parent / "benchmarks" / "hard_cases.csv"
 COLUMNS = ("case", "method", "a", "m", "n", "p", "q", "certificate", "cpu_s", "machine", "date")
 
 _TOLD = """\
-One run of `partialslip verify --suite full` on a busy machine with two cores ({machine}), {date}; other work made its
-CPU seconds longer. *Q_f* is dQ/(2 f P) and *s_f* is dsigma/(f p0), with the larger P where P varies and the largest f
-where f varies; both have a sign. The half-width of the contact is 1 mm, E is 72.8 GPa; of unlike bodies that is so
-without friction, and of like bodies of as much compliance. The profile is Hertz, or a flat of half-width b with round
-corners. *m* and *n* are errors against the reference, in a; the method without errors is the
-reference. A dash: not judged, no such quantity, or not in the run. CPU seconds are those of the solution, without the
-start of the process. The largest residual of all certificates in the run is {certificate:.0e}; the bar is 1e-7. What
-has no bar of its own (above) is judged by the accuracy 2e-5, and in these cases by another one:
+`partialslip verify --suite full` on a busy machine with two cores ({machine}), {date}. *Q_f* is dQ/(2 f P) and *s_f* is
+dsigma/(f p0), both with a sign, with the largest P and f where they vary. The half-width of the contact is 1 mm and E
+is 72.8 GPa (dissimilar bodies: without friction, and similar bodies of the same compliance). The profile is Hertz, or a
+flat of half-width b with round corners. *m* and *n* are errors against the reference, in a; the method without errors
+is the reference. Dash: not judged, no such quantity, or not in the run. CPU seconds are those of the solution, without
+the start of the process. The largest residual of all certificates is {certificate:.0e}; the bar is 1e-7. Accuracies
+other than 2e-5:
 """
 _HEAD = """\
 | case | Q_f | s_f | f | nu | profile | more | method | m | n | CPU s |

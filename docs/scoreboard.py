@@ -1,9 +1,8 @@
-"""Regenerate the page of the scoreboard: python docs/scoreboard.py writes scoreboard.md from benchmarks/submissions,
-benchmarks/start.json and benchmarks/peers/increments.jsonl."""
+"""Write scoreboard.md from benchmarks/submissions, benchmarks/start.json and benchmarks/peers/increments.jsonl."""
 
 import functools
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -52,18 +51,17 @@ NAMES = {  # short titles of the problems, as rows have at most 120 characters
     "PS-19": "varying P, ends slip",
     "PS-20": "varying P, ends stick",
     "PS-21": "varying M",
-    "PS-22": "unlike, sheared",
+    "PS-22": "dissimilar, sheared",
     "PS-23": "two blocks",
     "PS-24": "pad on a specimen",
-    "PS-25": "unlike, pressed",
+    "PS-25": "dissimilar, pressed",
     "PS-26": "meshes do not match",
-    "PS-27": "slip turns round",
+    "PS-27": "slip reversal",
 }
 COLUMNS = 4  # codes of partialslip side by side
 EQUAL = (  # ours, size of its elements in a, and codes that have elements of this size and order along the contact
     ("partialslip fem-P1", 0.1, ("kratos",)),
-    ("partialslip fem-P1", 0.05, ("calculix-mortar", "calculix-penalty")),
-    ("partialslip fem-P1", 0.05, ("opensees",)),
+    ("partialslip fem-P1", 0.05, ("calculix-mortar", "calculix-penalty", "opensees")),
     ("partialslip fem-P2", 0.05, ("getfem",)),
 )
 BARS = (1e-3, 4e-3, 1e-2)  # errors of a that are counted
@@ -72,96 +70,72 @@ PLACE = -0.8  # x/a, as in benchmarks/peers/increments.py
 _HEAD = """\
 # Scoreboard
 
-Grades of codes on the [problems of the benchmark](howto/benchmark.md), edition {edition}, from A (every target within
-1e-4) to E (beyond 5e-2), with CPU seconds in brackets. A dash: the code does not offer the problem, or one of the
-targets, or there was no time to run it. *none*: the code did not converge; the note in its answer tells where. *At
-best* is the highest grade that the uncertainty of the targets allows: no code can have a better one. This project ran
-all codes, with adapters of its own; their authors did not tune them.
+Grades on the [problems of the benchmark](howto/benchmark.md), edition {edition}, from A (every target within 1e-4) to E
+(beyond 5e-2), and CPU seconds. Dash: not run, or the problem or a target is not offered. *none*: not converged (notes
+in `benchmarks/submissions`). *At best*: the highest grade that the uncertainty of the targets allows. This project ran
+all codes with adapters of its own; their authors did not tune them.
 
-**Seconds.** All codes ran on one machine of two cores ({machine}), but not under equal conditions: partialslip alone,
-one process of one thread at a time; the others up to two at a time and beside tests of partialslip, which costs 5 to
-10 % ([measured](cost.md) with GetFEM). CPU seconds of
-CalculiX, GetFEM, Kratos and OpenSees are of their whole process, without the meshes, which partialslip makes; those of
-`getfem-graded` count the first run, which finds the ends. Methods of partialslip answered in a process that was warm.
-The first number is the solution, meshes included (P1 and P2: of the finest mesh). The second number adds the start,
-Python and libraries, measured first (`benchmarks/start.py`): {starts} CPU s. Only it should be compared with other
-codes. Repeated runs differ by a tenth and more. CalculiX solves slices of three dimensions, two layers of nodes held in
-plane strain: twice the unknowns that a plane code has on the same mesh. The answers are in `benchmarks/submissions`.
+**Seconds.** Two cores ({machine}). partialslip ran alone, in one thread, the others up to two at a time and beside
+tests, which costs 5 to 10 % ([measured](cost.md) with GetFEM); repeated runs differ by a tenth and more. Seconds of
+other codes are of the whole process without meshing; `getfem-graded` includes the run that finds the ends. For
+partialslip the first number is the solution with meshing (P1 and P2: the finest mesh); the second adds the start of
+Python ({starts} CPU s): compare only the second with other codes. CalculiX solves slices with two layers of nodes,
+twice the unknowns of a plane mesh.
 
-The table below them has, for each code, the number of problems that count (every target of contact, stick and tractions
-has a value), and the worst grade of each group of targets. "1 not offered": one problem with other values lacks values
-of the group.
+The table of groups has the number of problems with a value for every target of contact, stick and tractions, and the
+worst grade of each group. "1 not offered": one problem with other values lacks values of the group.
 
 """
 
 _WRONG = """
-
 ## What each code gets wrong
 
-Versions and settings are those of the tables above. All codes but partialslip have elements of 0.05 a along the contact
-(Kratos: 0.1 a). No target at one point can be better than such elements allow: next to the ends of contact and stick
-zone, where tractions fall like a square root, an error of 1 to 2 % is that of the elements. The elements are choices of
-our adapters: C3D8 in CalculiX, `quad` in OpenSees, SmallDisplacementElement2D4N in Kratos, Q2 in GetFEM. The codes have
-others, which were not run. What is wrong here is wrong in these versions with these elements, settings and meshes.
+Elements along the contact are 0.05 a (Kratos: 0.1 a): C3D8 in CalculiX, `quad` in OpenSees,
+SmallDisplacementElement2D4N in Kratos, Q2 in GetFEM; others were not run. Next to the ends of contact and stick zone,
+where tractions fall like a square root, such elements have errors of 1 to 2 %.
 
 {right}
 
-- **CalculiX 2.20, penalty contact** (1000 E/a on overlap, 100 E/a on stick, which the export chose). q depends on the
-  stiffness of sticking, which the user chooses ([how much](symptoms.md#which-stiffness)), and on the state before:
-  after the load has turned round, q is off by 0.2 f p0 next to the stick zone in PS-03. With the table of PS-12, a is
-  2.4 % too wide, without a message, while GetFEM finds a to 1e-3 on the same mesh. At nu = 0.4999 (PS-14) nodal
-  pressures scatter so much that no contact can be told. In PS-06, PS-07, PS-17 and PS-27 increments are cut until it
-  gives up. Varying P (PS-19, PS-20), a contact that rocks (PS-21), bodies of a size (PS-23, PS-24) and unlike materials
-  (PS-22, PS-25) converge.
+- **CalculiX 2.20, penalty contact** (1000 E/a on overlap, 100 E/a on stick). q depends on the stick stiffness
+  ([how much](symptoms.md#which-stiffness)) and on the state before: after load reversal it is off by 0.2 f p0 next to
+  the stick zone (PS-03). In PS-12, a is 2.4 % too wide, without a message (GetFEM, same mesh: 1e-3). At nu = 0.4999
+  (PS-14) nodal pressures scatter too much to tell the contact. PS-06, PS-07, PS-17 and PS-27 do not converge.
 - **CalculiX 2.20, mortar contact** (hard pressure, 1e5 E/a on stick). It converges where penalties give up. q is right
-  to 1 % where it does not fall steeply. Next to a stick zone of 1e-4 a (PS-07) no element is small enough. It depends
-  on the unit of length: a was off by 30 % at a = 1e-3 units, 5 % at 0.1 and 0.2 % at 1, without a message. The decks
-  use units in which a is 100 or more, to be safe ([calculix](howto/calculix.md)).
-- **GetFEM 5.4.2** (linear multipliers, constant of the augmented conditions E/a). One script serves all problems. On
-  uniform meshes the grade is that of the last element in the contact: p at 0.9 a is off by 1.5 %. At the corners of the
-  flat (PS-10, PS-11), where elements are fine, the linear multipliers overshoot and p_max is 7 % too large. At nu =
-  0.4999 (PS-14) m is off by 0.16 a. Meshes graded to the ends that a first run found give one to three grades more, at
-  three to five times the cost, but not in PS-04, whose left slip zone is 0.0017 a wide, and in PS-26.
-- **Kratos 10.4.4, mortar contact** (augmented Lagrangian, tangent_factor 1, 8 increments). When the load turns round,
-  the state of nodes beside the stick zone goes wrong without a message: in PS-05 dq is off by 0.8 of 2 f p0. Kratos'
-  own factor of the tangential penalty (tangent_factor = 0.025) makes this worse; the adapter takes 1. In PS-06, PS-17
-  and PS-23 Newton's method converges with 16 increments only, in two of them to a stick zone that is far off. With
-  tension in PS-03, near sliding (PS-08), at nu = 0.4999 (PS-14) and in the third cycle of PS-16 it converges with
-  neither. The adapter does not turn bodies (PS-21).
+  to 1 % where it is not steep, but not beside the stick zone of 1e-4 a (PS-07). The result depends on the unit of
+  length: a is off by 30 % at a = 1e-3 units, 5 % at 0.1 and 0.2 % at 1, without a message; decks have 100 or more
+  ([calculix](howto/calculix.md)).
+- **GetFEM 5.4.2** (linear multipliers, augmentation constant E/a). p at 0.9 a is off by 1.5 % (last element in the
+  contact), p_max at the corners of the flat by 7 % (PS-10, PS-11: overshoot of the multipliers), m at nu = 0.4999 by
+  0.16 a (PS-14). Meshes graded to the ends of a first run give one to three grades more at three to five times the
+  cost, except in PS-04 (left slip zone 0.0017 a wide) and PS-26.
+- **Kratos 10.4.4, mortar contact** (augmented Lagrangian, tangent_factor 1, 8 increments). After load reversal the
+  state beside the stick zone is wrong without a message: in PS-05 dq is off by 0.8 of 2 f p0, and by more with Kratos'
+  own tangent_factor of 0.025. PS-06, PS-17 and PS-23 need 16 increments, and two of them have a stick zone that is far
+  off. PS-03, PS-08, PS-14 and the third cycle of PS-16 do not converge. The adapter does not rotate bodies (PS-21).
 - **OpenSees 3.7.1** (OpenSeesPy 3.7.1.2; SimpleContact2D with multipliers, ContactMaterial2D with 1000 E/a on stick, 8
-  increments). Where it converges, it is as right as CalculiX's mortar contact on the same mesh. It does so with tension
-  (PS-03, PS-05, PS-06), near sliding (PS-08), over many cycles (PS-16, PS-17), out of phase (PS-18), under varying P
-  (PS-19, PS-20), for the pad on the pulled specimen (PS-24), and with 64 increments where slip turns round (PS-27: dq
-  to 5e-3). Convergence hangs on details: PS-02, PS-07, PS-15 and PS-17 need 16 increments, PS-02 those or elements of
-  0.049 or 0.051 a. No stick zone can be told from its tractions in PS-09, whose slip zones are narrower than an
-  element, in PS-20 and in PS-27, so that these do not count. It does not converge while unlike bodies are pressed
-  (PS-22, PS-25). At nu = 0.4999 (PS-14) `quad` locks: pressure stands on single nodes, 4.6 p0 too high, without a
-  message. The element finds contact one increment late; the adapter therefore repeats an increment under the same loads
-  until the multipliers rest. The handler "Transformation" keeps one tie of a node without a message: a body whose nodes
-  were tied along x and y by two commands tilted. The adapter does not turn bodies (PS-21) and needs meshes that match
-  (PS-26).
-- **partialslip.** Linear and quadratic elements of one size (P1, P2) lose a grade or two where the contact has corners
-  (PS-10, PS-11) and where nu = 0.4999 (PS-14). The marching method has the exact pressure, so its errors are those of q
-  alone.
+  increments). Where it converges, it is as right as CalculiX's mortar contact. PS-02, PS-07, PS-15 and PS-17 need 16
+  increments (or PS-02 elements of 0.049 or 0.051 a), PS-27 64 (dq to 5e-3). PS-09, PS-20 and PS-27 do not count, as
+  their tractions tell no stick zone. Pressing dissimilar bodies (PS-22, PS-25) does not converge. At nu = 0.4999
+  (PS-14) `quad` locks: pressure on single nodes, 4.6 p0 too high, without a message. Contact is found one increment
+  late: the adapter repeats increments until the multipliers rest. The handler "Transformation" keeps one constraint of
+  a node, without a message. The adapter does not rotate bodies (PS-21) and needs matching meshes (PS-26).
+- **partialslip.** P1 and P2 (elements of one size) lose a grade or two at corners (PS-10, PS-11) and at nu = 0.4999
+  (PS-14). March has the exact pressure: its errors are those of q.
 
 ## Codes that were looked at
 
-OpenSees was chosen among these. A code needs finite elements and Coulomb friction, and a package that installs. Not
-run, or given up: OpenSees' zeroLengthContact2D, which forgets at the end of an increment what a node that slips
-carries, and zeroLengthContactASDimplex; Akantu 5.0.7 (CouplerSolidContact, penalty_linear); Tamaas and SlipPY
-(half-spaces, no finite elements); Elmer, Code_Aster, Feel++ and FEBio (no package of the solver in Debian 12 or on
-PyPI).
+Not run, or given up: OpenSees' zeroLengthContact2D, which forgets the traction of a slipping node at the end of an
+increment, and zeroLengthContactASDimplex; Akantu 5.0.7 (CouplerSolidContact, penalty_linear); Tamaas and SlipPY
+(half-spaces, no finite elements); Elmer, Code_Aster, Feel++ and FEBio (no package in Debian 12 or on PyPI).
 """
 
 _EQUAL = """
 ## At equal resolution
 
-Methods of partialslip that are asked for an accuracy choose their meshes; the other codes have elements of one size
-along the contact. Here partialslip has elements of one size, too: linear ones beside Kratos, CalculiX and OpenSees,
-quadratic ones beside GetFEM. A cell has the largest error among the targets of contact, stick and tractions, in the
-scales of the targets, the target that it is of, and the CPU seconds of a whole process. Rows that no other code answers
-are left out. One thing is not equal: at the corners of the flat (PS-10, PS-11) the meshes of the other codes are
-finer than along the rest of the contact, and ours are not.
+Codes with elements of one size along the contact: partialslip's linear ones beside Kratos, CalculiX and OpenSees,
+quadratic ones beside GetFEM. A cell has the largest error among the targets of contact, stick and tractions, its
+target, and CPU seconds of the whole process. Rows that no other code answers are left out. At the corners of the flat
+(PS-10, PS-11) only the meshes of the other codes are finer.
 
 {tables}
 
@@ -169,11 +143,9 @@ finer than along the rest of the contact, and ours are not.
 """
 
 _LEARNT = """
-**What to learn from it.** Of {common} problems that both answer ({names}), ours has the smaller error in {smaller}. Our
-error over theirs goes from {least} to {most}; the largest ratios are at the corners of the flat, where their meshes are
-finer. Most of these errors are those of the last elements beside the ends of contact and stick zone. What the first
-tables show for partialslip comes from where its meshes have small elements, and from loads that it follows without
-increments.
+partialslip has the smaller error in {smaller} of the problems that both answer. Its error over theirs goes from {least}
+to {most}, the latter at the corners of the flat. Most of these errors are those of the last elements beside the ends of
+contact and stick zone.
 """
 
 _ROW = "| " + " | ".join(["{}"] * 10) + " |"
@@ -181,31 +153,23 @@ _ROW = "| " + " | ".join(["{}"] * 10) + " |"
 _TURNS = """
 ## How many increments: PS-27
 
-In PS-27 slip turns round on the way from load point to load point: the stick zone moves to the left and takes points
-back that have slipped ([theory](theory.md), section 7). The state at a load point is that of loads that change
-gradually; one increment from load point to load point has another one. Codes count slip from the start of an increment,
-so the number of increments decides. The elements are those of the table above.
+PS-27 has slip reversal between the load points: the stick zone moves to the left and takes points back that have
+slipped ([theory](theory.md), section 7). Codes count slip from the start of an increment, so the number of increments
+decides.
 
 {table}
 
-- **m/a** is read as `partialslip score` reads it, from points at which |dq| begins to leave the friction bound like a
-  square root. At an end that has drifted it does not: 2 f p - |dq| grows like (x + m)^(3/2), and what is there is
-  easily taken for the scatter of a slip zone. The grades above are of this reading.
-- **m/a, drifted** is a straight line through (1 - |dq|/(2 f p))^(2/3) at the points where the bracket is between 0.01
-  and 0.17, extended to zero. A dash: fewer than two points tell. From exact tractions it is 0.01 too large.
-- **room** is 1 - |dq|/(2 f p) at x = -0.8 a, a point that one step lets slip; above 1, dq has the wrong sign. It needs
-  no reading of ends.
+- **m/a** is read as by `partialslip score`, where |dq| leaves the friction bound like a square root. At a drifted end
+  2 f p - |dq| grows like (x + m)^(3/2), which is easily taken for scatter.
+- **m/a, drifted**: a straight line through (1 - |dq|/(2 f p))^(2/3) where the bracket is between 0.01 and 0.17,
+  extended to zero. Dash: fewer than two points. From exact tractions it is 0.01 too large.
+- **slack**: 1 - |dq|/(2 f p) at x = -0.8 a, which slips in one step; above 1, dq has the wrong sign.
 
-**What to learn from it.** With one increment per half cycle, converged and without a message, CalculiX's mortar contact
-and GetFEM find the state of one step: m is 0.71 a, and 0.72 a in the exact solution of one step, where gradual loads
-have 0.89 a. With 8 increments the point at -0.8 a sticks again, with three quarters of its room; with 64 the room is
-right to 5 %, and m, read for a drifted end, to 0.01 a, which is what this reading allows. n looks right with each
-number of increments that was tried, and so gives no warning. Where slip may turn round (under Hertz, large tension with
-Q_f above 0.5601 always does), compare 8 increments with 64, not with 1, and look at the traction just inside the zone
-rather than at its end. CalculiX with penalties gives up at the third load point whatever the increments. Kratos and
-OpenSees do not converge with 1 and 8. With 64 OpenSees finds the right state, as CalculiX's mortar contact and GetFEM
-do. Kratos then converges, on elements twice as wide, to a wrong state, without a message: dq has the wrong sign at
--0.8 a.
+With one increment CalculiX's mortar contact and GetFEM converge, without a message, to the solution of one step; with
+64 the slack is right to 5 %, and the drifted m to 0.01 a. Their n is right with any number and gives no warning. Kratos
+with 64, on elements twice as wide, converges to a dq of the wrong sign at -0.8 a, without a message. Where slip
+reversal may occur (under Hertz and large tension: always above Q_f = 0.5601), compare 8 increments with 64, and look at
+the traction just inside the zone rather than at its end.
 
 `python benchmarks/peers/increments.py` measures the rows, for the codes that are installed.
 """
@@ -227,7 +191,7 @@ def page() -> str:
 
 
 def _head(found: Sequence[Submission]) -> str:
-    """Head of the page: what the grades and the seconds of the codes ``found`` are."""
+    """Head of the page."""
     told = _start()
     starts = ", ".join(f"{seconds:.2g} ({method})" for method, seconds in told["start"].items())
     machines = {told["machine"], *(each.meta.machine for each in found)}
@@ -237,8 +201,7 @@ def _head(found: Sequence[Submission]) -> str:
 
 
 def _increments(problem: Problem, runs: Sequence[Mapping[str, Any]]) -> str:
-    """Table of ``runs`` with a few or many increments, between what is right and what one step gives, and what it
-    says."""
+    """Table of ``runs`` by number of increments, below the exact solutions of gradual loads and of one step."""
     scene, targets = problem.scene, problem.targets
     pressed, f = contact(scene), scene.friction.f
     found = half_cycle(pressed, f, scene.load.dQ, scene.load.dsigma)
@@ -250,7 +213,7 @@ def _increments(problem: Problem, runs: Sequence[Mapping[str, Any]]) -> str:
     rows = [("gradual loads, exactly", "", exact), ("one step, exactly", 1, step)]
     runs = sorted(runs, key=lambda run: (run["code"], run["increments"] or 0))
     rows += [(run["code"], run["increments"] or "own choice", run) for run in runs]
-    heads = "code", "increments", "m/a", "error", "m/a, drifted", "error", "n/a", "error", "room", "CPU s"
+    heads = "code", "increments", "m/a", "error", "m/a, drifted", "error", "n/a", "error", "slack", "CPU s"
     lines = [_ROW.format(*heads)]
     lines.append("|---" * 10 + "|")
     for name, count, run in rows:
@@ -284,28 +247,19 @@ def _equal(problems: Mapping[str, Problem], found: Sequence[Submission]) -> str:
             marks = [_mark(each, problem, number) for each in codes]
             told = [_error(each, mark, number) for each, mark in zip(codes, marks, strict=True)]
             if any(cell != "–" for cell in told[1:]):
-                lines.append(f"| {number} {NAMES[number]} | " + " | ".join(told) + " |")
+                lines.append(f"| {number} | " + " | ".join(told) + " |")
             for name, mark in zip(others, marks[1:], strict=True):
                 if mark and marks[0]:
                     smaller[name] += "+" if marks[0].error < mark.error else "-"
                     ratios.append(marks[0].error / mark.error)
         both |= smaller
-        counts = (f"{each.count('+')} of {len(each)} problems ({name})" for name, each in smaller.items())
-        parts.append("\n".join([*lines, "", fill(f"partialslip has the smaller error in {', '.join(counts)}.", 120)]))
+        parts.append("\n".join(lines))
     told = _LEARNT.format(
-        common=_listed(len(each) for each in both.values()),
-        names=", ".join(both),
-        smaller=_listed(each.count("+") for each in both.values()),
+        smaller=", ".join(f"{each.count('+')} of {len(each)} ({name})" for name, each in both.items()),
         least=f"1/{1 / min(ratios):.0f}",
         most=f"{float(f'{max(ratios):.2g}'):g}",
     )
     return _EQUAL.format(tables="\n\n".join(parts), told=fill(told.strip(), 120, break_on_hyphens=False))
-
-
-def _listed(numbers: Iterable[int]) -> str:
-    """``numbers`` as words of a sentence."""
-    *first, last = map(str, numbers)
-    return f"{', '.join(first)} and {last}"
 
 
 def _rung(submission: Submission, size: float) -> Submission:
@@ -333,7 +287,7 @@ def _error(submission: Submission, mark: Mark | None, number: str) -> str:
         return "*none*"
     if mark is None:
         return "–"
-    return f"{mark.error:.1e} ({mark.worst}; {_seconds(submission, number)})"
+    return f"{mark.error:.1e} ({mark.worst}; {_seconds(submission, number).removesuffix(' s')})"
 
 
 def _standings(found: Sequence[Submission]) -> str:

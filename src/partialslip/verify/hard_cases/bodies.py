@@ -6,16 +6,16 @@ from typing import Any
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.scenes import MANY_CYCLES, family, hard_scene
 
-# limit: unlike bodies with the mean compliance of the other cases, whose Dundurs' constant beta is 0.3
+# limit: dissimilar bodies with the mean compliance of the other cases, whose Dundurs' constant beta is 0.3
 _UNLIKE: Mapping[str, Any] = {"upper": {"E": 210e9, "nu": 0.3}, "lower": {"E": 48e9, "nu": 0.1}}
 
 
 @family(
     "Poisson's ratio from 0 to 0.4999",
     """
-Low-order triangles lock as the material becomes incompressible in plane strain. The body is then too stiff, and
-contact widths and tractions are wrong although everything converges. An error estimate from the neighbouring lower
-order locks as well and gives no warning. At nu = 0 products with nu vanish, which hides mistakes in them.
+Low-order triangles lock as plane strain becomes incompressible: too stiff, with wrong widths and tractions although
+everything converges. An error estimate from the neighbouring lower order locks, too. At nu = 0 products with nu vanish,
+which hides mistakes in them.
 """,
 )
 def poisson() -> Iterator[Case]:
@@ -27,10 +27,9 @@ def poisson() -> Iterator[Case]:
 @family(
     "Coefficients of friction of 1e-3 and 10",
     """
-Between similar bodies, results scaled by f do not depend on f. A difference between the two cases therefore shows a
-bound or a tolerance in the wrong units. At 1e-3, shear tractions are not solved at all if their tolerance has the
-scale of the pressure. A large f makes fixed-point iterations between pressure and shear diverge, although similar
-bodies need no such iteration.
+Between similar bodies, results scaled by f do not depend on f: a difference between the cases shows a bound or a
+tolerance in the wrong units. At 1e-3, shear is not solved if its tolerance has the scale of the pressure. A large f
+makes fixed-point iterations between pressure and shear diverge.
 """,
 )
 def friction() -> Iterator[Case]:
@@ -41,10 +40,9 @@ def friction() -> Iterator[Case]:
 @family(
     "Flat and rounded punches with b/a up to 0.999",
     """
-The pressure has two logarithmic kinks, and a peak in a corner a thousandth of the contact wide. In the corner it
-falls to zero like a square root. A uniform mesh along the contact misses the peak, the force in it and the slip zone
-in it. Quadrature that does not split at the kinks stalls. The width of the corner is a difference of nearly equal
-numbers.
+The pressure has two logarithmic kinks, where quadrature must split, and a peak in a corner a thousandth of the contact
+wide, where it falls to zero like a square root. A uniform mesh misses the peak, its force and the slip zone in it. The
+width of the corner is a difference of nearly equal numbers.
 """,
 )
 def sharp() -> Iterator[Case]:
@@ -53,15 +51,12 @@ def sharp() -> Iterator[Case]:
 
 
 @family(
-    "Unlike bodies that are pressed together from a flat",
+    "Dissimilar bodies that are pressed together from a flat",
     """
-Between unlike bodies pressing alone moves the surfaces along x, friction resists, and points lock in shear as they
-come into contact. The contact of a cylinder grows at one and the same ratio of stick zone to contact, which some codes
-use. That of a flat with round corners does not: it begins with the whole flat at once. Load steps then lock in shear
-that depends on their number: eight left q1 off by 0.6. What the locked in shear opens beside the flat differs from
-what it is without friction, by 6 % in the second case. In the first one friction is weak and the flat long, in the
-last one the flat is short. There is no exact solution: the march is the reference, which shares with finite elements
-how the contact grows, but no mesh. The accuracy is 1e-3.
+Pressing dissimilar bodies moves their surfaces along x, and points lock in shear as they come into contact. A flat with
+round corners begins with the whole flat at once, unlike a cylinder, so that q1 depends on the number of load steps
+(eight: off by 0.6) and the gap beside the flat on friction (by 6 % in the second case). March is the reference (fem
+shares its growth of the contact, no mesh).
 """,
 )
 def unlike_punches() -> Iterator[Case]:

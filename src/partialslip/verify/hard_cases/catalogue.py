@@ -4,6 +4,7 @@ Cases are grouped in families by what is hard: loads, load histories, bodies, me
 """
 
 import textwrap
+from collections.abc import Iterable, Iterator
 
 from partialslip.scene.reading import load_scene, shipped_scenes
 from partialslip.tools.groups import grouped
@@ -13,20 +14,18 @@ from partialslip.verify.hard_cases.scenes import Family
 
 _HEAD = """# Hard cases
 
-We expect these scenes to be hard for contact codes. For each family this page gives the reasons and the requirements.
-The reasons are those of mechanics and of earlier versions of partialslip; no other code was run on these scenes: what
-the page says of codes is what may happen.
-`partialslip verify --suite full` runs all scenes after the shipped scenes, and `partialslip verify --suite full --only
-NAME` runs one scene. The methods in brackets solve the scene. [The last section](#loads-and-what-was-measured) has the
-loads of every case, and errors and cost of every method.
+Scenes that are hard for contact codes, in families with one reason each. The reasons come from mechanics and from the
+development of partialslip. No other code was run on these scenes: what is said of codes may happen.
 
-Unless an entry has other bars, every result must meet these requirements:
+`partialslip verify --suite full` runs all scenes, after the shipped ones; `--only NAME` runs one. Brackets name the
+methods that solve the scene. [The last section](#loads-and-what-was-measured) has loads, errors and costs.
 
-- The result is finite and certified.
-- The regime is that of the reference.
-- The ends of the contact and of the stick zone are within the accuracy of the scene (2e-5 of a; the last section
-  lists the cases with another one), however narrow the zone is.
-- Pressure is within ten times and shear within fifteen times this accuracy (relative L2 of cell averages)."""
+Unless an entry has other bars, every result must
+
+- be finite and certified, and have the regime of the reference;
+- have the ends of the contact and of the stick zone within the accuracy of the scene (2e-5 of a, but for the cases
+  listed in the last section), however narrow the zone is;
+- have pressure within ten times and shear within fifteen times this accuracy (relative L2 of cell averages)."""
 
 
 FAMILIES: tuple[Family, ...] = (  # in the order of the page
@@ -68,17 +67,23 @@ def catalogue_page() -> str:
     lines = [_HEAD]
     for family in FAMILIES:
         lines += [f"## {family.title}", _filled(family.hard)]
-        lines += ["\n".join(map(_listed, family.cases))]
+        lines += ["\n".join(_listed(family.cases))]
     return "\n\n".join(lines) + "\n"
 
 
-def _listed(case: Case) -> str:
+def _listed(cases: Iterable[Case]) -> Iterator[str]:
+    """Yield items of a list: names of ``cases`` with the same methods and bars, the methods, the bars."""
+    for told, names in grouped((_judged(case), f"`{case.name}`") for case in cases).items():
+        yield _filled(f"- {', '.join(names)} {told}", "  ")
+
+
+def _judged(case: Case) -> str:
     bars = grouped(
         (bar.reason, f"{key} " + ("not judged" if bar.value is None else f"{bar.value:g}"))
         for key, bar in case.bars.items()
     )
     looser = "".join(f" {', '.join(keys)}: {reason}." for reason, keys in bars.items())
-    return _filled(f"- `{case.name}` ({', '.join(case.methods)}).{looser}", "  ")
+    return f"({', '.join(case.methods)}).{looser}"
 
 
 def _filled(text: str, indent: str = "") -> str:

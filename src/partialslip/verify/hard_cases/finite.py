@@ -27,14 +27,11 @@ def _blocks(
 @family(
     "Large blocks whose plates are moved, turn on a pin, or share Q",
     """
-A displacement in place of Q makes Q a result. Near sliding a search for Q leaves the interval that the contact
-carries, and a coarse mesh, which is too stiff, slides where a fine one does not. Near the stuck contact Q is a
-small difference. A soft spring hands over a force and a rigid one a displacement: formulas with either stiffness in
-a denominator lose all digits at the other limit. A pin in the contact line must not turn, although the angle is an
-unknown without a load. A pulled block moves by a thousand times the slip where it touches, and grips that carry
-equal shares must leave the contact as it is between half-planes. The blocks are 4000 times as wide as the
-half-width of the contact. Where half-planes have an answer, it must come out within the accuracy of 1e-3. Under
-displacements they have none, and only the conditions on the result are judged.
+Under a displacement Q is a result: near sliding its search leaves the interval that the contact carries, and near the
+stuck contact Q is a small difference. Formulas with a spring's stiffness in a denominator fail at the soft or the rigid
+limit; a pin in the contact line must not turn; grips with equal shares must leave the contact as between half-planes.
+The blocks are 4000 half-widths of the contact wide; where half-planes have an answer, it must come out, and under
+displacements only the conditions on the result are judged.
 """,
 )
 def plates() -> Iterator[Case]:

@@ -1,4 +1,4 @@
-"""Hard cases: load histories: means, many cycles, varying pressure, slip that turns round."""
+"""Hard cases: load histories: means, many cycles, varying pressure, slip reversal."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -24,11 +24,9 @@ _ACCURACY: Mapping[str, Any] = {"accuracy": 1e-4}  # limit: ends that have drift
 @family(
     "Mean loads at 0.5, 0.9, 0.98 and 1.02 of the largest in a steady state",
     """
-The shear that the first cycles lock in determines q at either load point. The range of q tends to the steady range,
-more slowly the nearer the mean load is to the bound. Beyond the bound every cycle adds slip. Codes that stop after
-the usual two or three cycles may report a transient as steady. Codes that read the stick zone from the flags of one
-instant may find it far too small. If the history is not committed at the end of an increment, the contact ratchets
-below the bound, too. The accuracy is 1e-3: the first cycles take many steps.
+The shear that the first cycles lock in determines q at either load point; its range settles more slowly the nearer the
+mean load is to the bound, and beyond it every cycle adds slip. Codes that stop after two or three cycles report a
+transient as steady, and a history that is not committed at the end of an increment ratchets below the bound.
 """,
 )
 def mean_loads() -> Iterator[Case]:
@@ -43,9 +41,8 @@ def mean_loads() -> Iterator[Case]:
 @family(
     "Two hundred cycles at 0.995 of the largest mean load",
     """
-Errors of the steps add up. A loose friction tolerance gives a little slip in every cycle, which looks like
-ratcheting. A cycle that repeats to rounding is the steady state, and partialslip skips the remaining cycles. The
-accuracy is 1e-3.
+Errors of the steps add up, and a loose friction tolerance gives a little slip in every cycle, which looks like
+ratcheting. partialslip skips the remaining cycles once a cycle repeats to rounding.
 """,
 )
 def cycles() -> Iterator[Case]:
@@ -59,13 +56,10 @@ def cycles() -> Iterator[Case]:
 @family(
     "Varying P and M: P nearly to zero, dQ = f dP, and a moment at which an end stops slipping",
     """
-Where surfaces stick while the contact grows, each part of the surfaces sticks from the moment at which it touches.
-A code that lets slip count from the beginning of the step errs by tens of percent in one step, and by a percent in
-sixty-four. If P falls to a thousandth, nearly all of the contact is made anew in every cycle. At dQ = f dP the ends
-are just about to slip: rounding decides on stick or slip in every step. A moment moves the contact to and fro: it
-leaves at one end while it comes at the other, and just below |dQ| = 2 f dM/a both ends slip by a hair. Codes that
-keep the traction of nodes that open, or the place at which they stuck, may never reach a steady cycle. The accuracy
-is 1e-3: the pressure is solved anew in every step.
+While the contact grows, each part of the surfaces sticks from the moment at which it touches: slip counted from the
+beginning of the step is off by tens of percent in one step, and by a percent in sixty-four. At dQ = f dP, and just
+below |dQ| = 2 f dM/a, the ends slip by a hair, so that rounding decides on stick or slip in every step. Codes that keep
+the traction of nodes that open, or the place at which they stuck, may never reach a steady cycle.
 """,
 )
 def varying_pressure() -> Iterator[Case]:
@@ -85,18 +79,13 @@ def varying_pressure() -> Iterator[Case]:
 
 
 @family(
-    "Slip that turns round on the way: zones that drift, and zones inside that slip",
+    "Slip reversal between the load points: zones that drift, and zones inside that slip",
     """
-Between the load points the stick zone drifts: it takes points back on one side that have slipped, and then leaves
-them again, or a part of it slips the other way for a while and sticks again. The tractions at the load points do
-not show it. One load step ends with another m, off by 3e-4 to 0.11 a in these cases. The ends of the stick zone
-that have drifted are flat: |dq| meets its bound with the power 3/2, so that m read from the traction is poor. The
-cases are beside the borders: where the drift begins, where it ends before the loads do, and where a zone inside
-begins to slip. In one case loads with a mean lock in shear of half of the bound before the cycle is steady. In
-another points beside those that never slip creep for some cycles before they stick, and the kink of q is where the
-creeping ones end. The accuracy of both is 1e-3, as cycles are many. Under tension of a thousand f p0 all points
-slip but a strip of 0.0032 a, which sweeps over half of the contact, node by node. The rounding of displacements is
-a thousand times as large as elsewhere: a cycle that repeats must not be taken for one that changes.
+Between the load points the stick zone drifts and takes points back, or a zone inside it slips the other way for a
+while: the tractions at the load points do not show it, and one load step has another m, off by 3e-4 to 0.11 a. At
+drifted ends |dq| meets its bound with the power 3/2, so that m read from the traction is poor. The cases lie beside the
+borders; two have mean loads, and one a strip of 0.0032 a under a thousand f p0, whose rounding of displacements is a
+thousand times as large as elsewhere.
 """,
 )
 def turning() -> Iterator[Case]:

@@ -13,12 +13,10 @@ from partialslip.verify.hard_cases.scenes import MANY_STEPS, PEAKS, family, hard
 @family(
     "Near sliding: dQ/(2 f P) = 1 - 1e-3 to 1 - 1e-9",
     """
-The stick zone is sqrt(1 - Q_f) of the contact. Inside it the shear is below the friction bound by a part in 1e9 of
-the bound, which is as large as the tolerance of many codes. With a penalty or a regularised law the whole contact
-creeps. The code may find no stick zone, or a stick zone as wide as its elastic slip. Newton's iteration on stick
-and slip flags may switch one last node back and forth. A mesh that does not resolve the zone gives ends that are
-off by an element. The error estimate assumes resolved zones and is then a hundred times too small. partialslip
-therefore refines a zone of fewer than sixteen elements before it accepts the ends.
+The stick zone is sqrt(1 - Q_f) of the contact, with shear as little as 1e-9 below the friction bound: with penalties
+and regularised laws all of it creeps, and Newton's iteration may switch one last node back and forth. A mesh that does
+not resolve the zone is off by an element, and its error estimate is a hundred times too small. partialslip refines
+zones of fewer than sixteen elements.
 """,
 )
 def near_sliding() -> Iterator[Case]:
@@ -30,12 +28,9 @@ def near_sliding() -> Iterator[Case]:
 @family(
     "Near stuck: dQ/(2 f P) = 1e-3 to 1e-9",
     """
-Slip is confined to strips at the ends that are narrower than any element. The traction beside the strips is the
-adhered one, which is infinite at the ends. Codes with an elastic slip tolerance may report that the contact is
-stuck, or that it slips a little everywhere. Two meshes that both miss the strips agree with each other, which is no
-sign of convergence. The ends of the stick zone are accurate, because they lie next to the ends of the contact. But
-q in the last elements is a mean over a peak that the mesh does not resolve. The reference of the relative norm is
-as small as the load, so this mean alone causes an error of several percent.
+Slip is confined to strips at the ends that are narrower than any element: an elastic slip tolerance may give a stuck
+contact, or slip everywhere, and two meshes that both miss the strips agree. The last cells average q over a singular
+peak, which alone is an error of several percent.
 """,
 )
 def near_stuck() -> Iterator[Case]:
@@ -47,11 +42,9 @@ def near_stuck() -> Iterator[Case]:
 @family(
     "At the transition from small to large tension, and 1e-9 beside it",
     """
-The left slip zone has just disappeared, or is a billionth of the contact wide. Its sign changes from one side of the
-transition to the other. The formulas of one regime fail under the loads of the other regime: the root of a negative
-number, or a modulus above one. A search with one branch for each regime may jump between the branches. A code that
-compares floating-point loads to name the regime may flip between the names. partialslip solves for an unknown that
-passes smoothly through zero.
+The left slip zone has just disappeared, or is a billionth of the contact wide. The formulas of one regime fail under
+loads of the other (root of a negative number, modulus above one), and a search with one branch for each regime jumps
+between them. partialslip solves for an unknown that passes smoothly through zero.
 """,
 )
 def at_transition() -> Iterator[Case]:
@@ -63,13 +56,10 @@ def at_transition() -> Iterator[Case]:
 @family(
     "Huge tension: stick zones of 1e-3 to 1e-8 of a, off the middle",
     """
-The stick zone never vanishes. It shrinks exponentially, but not to the middle of the contact. The sum m + n
-cancels. Elliptic integrals whose modulus tends to one lose all digits if they take the modulus instead of the
-complementary modulus. On a mesh the zone is smaller than the distance of two nodes. Solvers that need one sticking
-node to fix the rigid motion may get a singular matrix, cycle, or report m = n = 0 at the middle. Under gradual
-loads the tiny zone moves along the contact, and slip reverses behind it. One step, and even four, end with the
-tractions of a single step, and m of gradual loads differs by 0.02 to 0.06 a. March and fem follow events. The exact
-solution of gradual loads is the reference, except for 1e-8, where m and n are not judged. The accuracy is 1e-2.
+The stick zone shrinks exponentially, off the middle: m + n cancels, elliptic integrals need the complementary modulus,
+and a solver that needs a sticking node may fail or report m = n = 0. Under gradual loads the zone moves, with slip
+reversal behind it: m of one step, and even of four, is off by 0.02 to 0.06 a. The reference is the exact solution of
+gradual loads (m and n of 1e-8 are not judged).
 """,
 )
 def huge_tension() -> Iterator[Case]:
@@ -82,9 +72,9 @@ def huge_tension() -> Iterator[Case]:
 @family(
     "No shear: dQ = 0",
     """
-Without a change of Q any tension is large tension: the transition is at zero. The solution is antisymmetric.
-Quantities that are divided by dQ, or scaled with dQ, are lost. An increment with zero resultant must still be a load
-step. A code that measures convergence by Q may stop before the first iteration.
+Any tension is large tension, and the solution is antisymmetric: quantities divided by dQ, or scaled with it, are lost.
+An increment with zero resultant must still be a load step; convergence measured by Q may stop before the first
+iteration.
 """,
 )
 def no_shear() -> Iterator[Case]:
@@ -95,9 +85,8 @@ def no_shear() -> Iterator[Case]:
 @family(
     "No tension: dsigma = 0",
     """
-This is the case of Cattaneo and Mindlin. It is symmetric, so both ends of the stick zone move at the same time, and
-pairs of nodes change side in the same iteration. Rules that release one node at a time break the symmetry, and the
-solution may stay asymmetric.
+The symmetric case of Cattaneo and Mindlin: both ends of the stick zone move at once, and pairs of nodes change side in
+the same iteration. Rules that release one node at a time break the symmetry for good.
 """,
 )
 def no_tension() -> Iterator[Case]:
@@ -107,8 +96,8 @@ def no_tension() -> Iterator[Case]:
 @family(
     "The stick zone beside the centre",
     """
-x = 0 slips. Formulas that take the sign of the traction from the sign of x, as printed, are wrong here. A mesh that
-is fine only in the middle and at the ends is wrong, too, and so is a search that starts with a centred zone.
+x = 0 slips. Formulas that take the sign of the traction from the sign of x fail, and so do meshes that are fine only in
+the middle and at the ends, and searches that start with a centred zone.
 """,
 )
 def beside() -> Iterator[Case]:
@@ -119,11 +108,9 @@ def beside() -> Iterator[Case]:
 @family(
     "A coefficient of friction that varies along the contact",
     """
-The bound f(x) p is not the pressure under any profile. It has kinks where f has them, beside or inside the slip
-zones. A reading of the end of the stick zone that reaches across a kink is off, and so is an element with a kink
-inside. The largest f, or its mean, in place of f(x) moves both ends. Where f steps down, the end of the stick zone
-hardly moves under other loads. Where f dips in the middle, points there slip before the ends do if the dip is deep:
-more than one zone sticks, and formulas with one zone give tractions beyond the bound.
+The bound f(x) p has kinks: readings of the end of the stick zone, and elements, that reach across a kink are off. The
+largest or the mean f in place of f(x) moves both ends. A deep dip of f lets points inside slip first: more than one
+zone sticks, and formulas with one zone give tractions beyond the bound.
 """,
 )
 def uneven_friction() -> Iterator[Case]:
@@ -142,9 +129,8 @@ def uneven_friction() -> Iterator[Case]:
 @family(
     "Mirrored loads",
     """
-If Q changes sign and sigma does not, the stick zone moves to the other side. These cases test signs under mirrored
-loads: one that is right in only one half of the contact, or a tension applied in the wrong direction. Other scenes
-detect them, too.
+If Q changes sign and sigma does not, the stick zone moves to the other side: this shows a sign that is right in one
+half of the contact only, or a tension in the wrong direction.
 """,
 )
 def mirrored() -> Iterator[Case]:

@@ -22,10 +22,9 @@ _ALONG = 0.05  # accuracy: element size along the contact, in contact half-width
 @family(
     "One node that sticks, none, and one node in contact",
     """
-Textbooks show contacts with two hundred nodes, but coarse meshes of large models have one. Without a sticking node
-only the force balance fixes the rigid tangential motion, and the matrix of sticking nodes is empty. A single node in
-contact gives no area, no slope of the pressure and no end to extrapolate to. The iteration must end, and give a
-certified result whose ends are within an element.
+Without a sticking node only the force balance fixes the rigid tangential motion, and the matrix of sticking nodes is
+empty. A single node in contact gives no area, no slope of the pressure and no end to extrapolate to. The iteration must
+end with a certified result whose ends are within an element.
 """,
 )
 def few_nodes() -> Iterator[Case]:
@@ -45,10 +44,10 @@ def few_nodes() -> Iterator[Case]:
 @family(
     "Flat triangles of aspect 1e4, meshes off the middle, meshes that do not match",
     """
-Flat triangles make the stiffness ill-conditioned. Iterative solvers and tolerances on absolute forces are affected
-first. A mesh with nodes at the ends by construction can give the right result for the wrong reason. If the mesh is
-shifted by a part of an element, the ends lie anywhere between nodes. If the nodes of the two bodies do not match,
-node-to-segment contact fails the patch test, and gaps sampled at the nodes of one side oscillate.
+Flat triangles make the stiffness ill-conditioned, and iterative solvers and tolerances on absolute forces fail first. A
+mesh with nodes at the ends of the zones can be right for the wrong reason; on a shifted mesh the ends lie anywhere
+between nodes. If the nodes of the bodies do not match, node-to-segment contact fails the patch test, and gaps sampled
+at the nodes of one side oscillate.
 """,
 )
 def poor_meshes() -> Iterator[Case]:
