@@ -137,13 +137,17 @@ def test_without_friction_there_is_no_shear(tmp_path):
     assert score(scene, written(tmp_path / "t.csv", (x, p, 0 * p)), bar=1e-2).outcome is Outcome.PASSED
 
 
-def test_a_contact_that_pulls_is_named(tmp_path):
+def test_a_contact_that_pulls_is_missed(tmp_path):
     x, p, dq = sampled(161)
     touching = np.flatnonzero(p > 0)
     p[[touching[0] - 1, touching[-1] + 1]] = -0.2 * EXACT.p0
-    notes = " ".join(compared(SCENE, written(tmp_path / "t.csv", (x, p, dq)))[0].notes)
+    path = written(tmp_path / "t.csv", (x, p, dq))
+    notes = " ".join(compared(SCENE, path)[0].notes)
     assert "p is -0.2 of its largest" in notes
     assert "does not pull" in notes
+    verdicts = {each.quantity: each for each in score(SCENE, path, bar=1e-2).comparisons["t.csv"].verdicts}
+    assert verdicts["p_least"].outcome is Outcome.MISSED
+    assert verdicts["p_least"].error == pytest.approx(0.2)
 
 
 def test_the_range_of_shear_out_of_phase_has_no_sign(tmp_path):

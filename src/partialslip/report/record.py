@@ -3,6 +3,7 @@
 A file is sealed (:mod:`partialslip.tools.seal`), and its outcomes are concluded anew from its numbers when it is read.
 """
 
+import inspect
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -246,4 +247,7 @@ def schema() -> dict[str, Any]:
     found = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Record)}
     seal = {"type": "string", "description": "Checksum of all other keys; see partialslip.tools.seal."}
     found["$defs"]["Record"]["properties"][KEY] = seal
+    for definition in found["$defs"].values():  # msgspec before 0.23 leaves the indentation of docstrings
+        if "description" in definition:
+            definition["description"] = inspect.cleandoc(definition["description"])
     return found

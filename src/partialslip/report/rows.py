@@ -30,6 +30,7 @@ _MEANING = {
     "M": "M, moment of p",
     "p": "p, pressure",
     "p_max": "p_max, largest p",
+    "p_least": "p, tension",
     "dQ": "dQ, sum of dq",
     "q": "q, shear",
     "q_max": "q, largest",

@@ -7,7 +7,7 @@ from partialslip.tools.errors import InputError
 
 _CONTACT = ("a", "left", "right", "left_1", "right_1", "left_2", "right_2")
 _STICK = ("m", "n")
-_PRESSURES = ("P", "P_1", "M", "M_1", "p", "p_1")
+_PRESSURES = ("P", "P_1", "M", "M_1", "p", "p_1", "p_least")
 _SHEARS = ("dQ", "q", "q1", "q2")
 
 #: Bars by quantity, in multiples of the accuracy asked for: ends in a, tractions in relative L2. All other quantities

@@ -43,7 +43,7 @@ class Comparison(Notebook):
     - ``p``, ``p_1``: relative L2 over the contact of cell averages, at load points 2 and 1. Each cell's mean is
       compared with the reference's mean over the same cell.
     - ``q``, ``q1``, ``q2``: the same with q = (q2 - q1)/2, relative to the larger of q's norm and 1e-3 of f p's norm.
-    - ``p_max``, ``q_max``: difference of the largest values, in p0 and f p0.
+    - ``p_max``, ``q_max``: difference of the largest values, in p0 and f p0. ``p_least``: tension in a table, in p0.
     - ``surface``: relative L2 of sigma_xx along both surfaces, by cell averages. ``largest``: relative error of the
       largest sigma_xx on the lower body. ``inside``: relative L2, by area, of the stresses within 3 a, at 3600
       points. All three only if stresses were asked for and both results have them.

@@ -142,6 +142,8 @@ def _measured(result: Result, reference: Result, pair: Pair, scene: Scene, stres
         true = known[key] if given is None else given
         yield _apart(key.replace("p", "M"), "P a", *(each / (scene.P * a) for each in (true, M)))
     yield _apart("p_max", "p0", to.p_max / p0, of.p_max / p0)
+    if of.observed and (pull := float(of.p.min())) < 0:  # a contact does not pull
+        yield _apart("p_least", "p0", min(float(to.p.min()), 0.0) / p0, pull / p0)
     limit = f * scene.P
     yield _apart("dQ", "2 f P", *((half / limit if limit else math.nan) for half in (scene.load.dQ / 2, sums["q"])))
     yield "q", NORM, None, None, errors["q"]
