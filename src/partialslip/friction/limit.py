@@ -21,14 +21,11 @@ _ROUNDED = 30.0
 # accuracy: changes over a cycle, over those that count as none, that are rounding where they have not fallen for so
 # many cycles
 _SMALL, _RESTLESS = 100.0, 8
-LIMIT = (
-    10.0  # accuracy: changes of the last cycle that may lie between it and the limit, however few cycles went before
-)
+# accuracy: changes of the last cycle that may lie between it and the limit, however few cycles went before
+LIMIT = 10.0
 SLIPS = 1e-9  # accuracy: room up to the bound, relative, at which a node slips
-_LOST, _KEPT = (
-    0.5,
-    0.75,
-)  # accuracy: of the room of the last cycle: a limit up to the first is none, from the second on some
+# accuracy: of the room of the last cycle: a limit up to the first is none, from the second on some
+_LOST, _KEPT = 0.5, 0.75
 STATES = 4  # accuracy: ends of cycles that are looked at
 _CLEAN = 0.1  # accuracy: of the last change: what the progression may leave unexplained
 _STEADY = 0.3  # accuracy: of 1 - ratio: by how much the ratio may change from cycle to cycle
