@@ -51,9 +51,8 @@ _INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kin
 # cost: Excess of errors up to which the next mesh is halfway, which mostly divides them by 4 to 20; the same of q, q1
 # and q2 after the first step, when halfway meshes hardly reduce the estimates of these
 _NEARLY = 3.0, 0.7
-_PASSING = (
-    32.0  # cost: the same at kinks that neither q1 nor q2 has, and, at most, at kinks of the coefficient of friction
-)
+# cost: the same at kinks that neither q1 nor q2 has, and, at most, at kinks of the coefficient of friction
+_PASSING = 32.0
 _WORK = 5e11  # limit: cells^3 times load steps of a mesh
 _LEG = 6.0  # cost: work of a leg that is followed while cells touch and open, over that of a load step (measured)
 _HALVED = 1.7  # accuracy: growth that is less reduced is that of a halfway mesh: 2 times is usual, sqrt(2) halfway
