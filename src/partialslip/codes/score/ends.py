@@ -29,7 +29,7 @@ _SCAN, _AGAIN = 31, 7  # cost: ends tried at once, and how often between the nei
 FEWEST = 3  # accuracy: points beyond the end of a square root that show a drift
 NOISE_FACTOR = 4.0  # accuracy: standard deviations of the noise: smaller values count as noise
 ZERO_LEVEL = 1e-9  # accuracy: of the largest value: smaller values count as zero
-# accuracy: of the largest value: what codes leave outside of a contact; a root is as small only within 1e-10 of an end
+# accuracy: of the largest pressure: what codes leave outside of a contact; a root is as small within 1e-10 of an end
 _NOTHING = 1e-5
 
 
@@ -78,7 +78,7 @@ def noise_level(values: Array, x: Array) -> float:
 def zone_around_peak(values: Array, least: Array | float) -> tuple[int, int] | None:
     """First and last index of the points around the largest of ``values`` that exceed ``least``; None if none do."""
     peak = int(values.argmax())
-    inside = values > np.maximum(least, _NOTHING * values[peak])
+    inside = values > np.maximum(least, ZERO_LEVEL * values[peak])
     if not inside[peak]:
         return None
     outside = np.flatnonzero(~inside)
@@ -88,9 +88,14 @@ def zone_around_peak(values: Array, least: Array | float) -> tuple[int, int] | N
     return int(first), int(last)
 
 
+def least_pressure(x: Array, p: Array) -> float:
+    """Largest of the pressures ``p`` at ``x`` (n,) that are none: noise, or what codes leave outside of a contact."""
+    return max(NOISE_FACTOR * noise_level(p, x), _NOTHING * float(p.max()))
+
+
 def possible_averages(x: Array, p: Array, averages: Sequence[Average]) -> tuple[Average, ...]:
     """Which of ``averages`` the values of the pressure ``p`` at ``x`` (n,) may be, from both ends of the contact."""
-    least = NOISE_FACTOR * noise_level(p, x)
+    least = least_pressure(x, p)
     touching = zone_around_peak(p, least)
     if touching is None or touching[1] - touching[0] < max(_TERMS) + 3:
         return tuple(averages)
@@ -172,7 +177,7 @@ class _Reading:
         self.risen = first + int(risen[-1] if len(risen) else 0)
         # what counts as zero, in c: the values near the end are about the averages of c (end - x)^(1/2)
         begin = self._begin(_NEAR[0])
-        zero = max(least, _NOTHING * float(values.max()))
+        zero = max(least, ZERO_LEVEL * float(values.max()))
         self.zero = zero / float(values[begin]) * float(x[last] - x[begin]) ** 0.5
         self.more = self.spacing if last + 1 == len(x) else 0.0
 

@@ -9,6 +9,7 @@ from partialslip.codes.score.ends import (
     NOISE_FACTOR,
     ZERO_LEVEL,
     ZoneEnd,
+    least_pressure,
     noise_level,
     read_left_end,
     read_right_end,
@@ -153,7 +154,7 @@ def _contacts(samples: Samples, origin: str) -> tuple[SeenContact, SeenContact]:
 def _contact(samples: Samples, p: Array, name: str, origin: str) -> SeenContact:
     """Contact under the pressure ``p`` at the points of ``samples``, (n,); ``name`` is the column's for messages."""
     x, averages = samples.x, samples.averages
-    least = NOISE_FACTOR * noise_level(p, x)
+    least = least_pressure(x, p)
     touching = zone_around_peak(p, least)
     if touching is None or touching[1] - touching[0] + 1 < FEWEST_POINTS:
         hint = "; or are the elements of another order (--order)?" if samples.cells is not None else ""
