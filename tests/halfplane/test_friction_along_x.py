@@ -127,7 +127,13 @@ def test_methods_agree_on_random_coefficients(seed):
     changed = scene.replace(
         friction={"f": f, "x": x}, load={"Q": [-Q, Q], "sigma": [-sigma, sigma]}, fem={"accuracy": 1e-4}
     )
-    exact, march, fem = run(changed, ["exact", "march", "fem"]).results.values()
+    try:
+        exact, march, fem = run(changed, ["exact", "march", "fem"]).results.values()
+    except InputError:  # exact holds for one stick zone between zones that slip: march is the reference elsewhere
+        march, fem = run(changed, ["march", "fem"]).results.values()
+        known = {key: march.estimate[key] + fem.estimate[key] for key in "mn"}
+        assert all(abs(getattr(march, key) - getattr(fem, key)) < known[key] * a for key in "mn")
+        return
     for key in "mn":
         for result in (march, fem):
             error = abs(getattr(result, key) - getattr(exact, key)) / a

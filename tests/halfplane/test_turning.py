@@ -201,7 +201,7 @@ def test_a_strip_that_sticks_under_a_thousand_times_the_tension():
     """The rounding of displacements is a thousand times as large as elsewhere: it is no change from cycle to cycle."""
     run = partialslip.run(hard_scene("strip", 0.4, 1000.0), ["march", "fem"])
     march, fem = run["march"], run["fem"]
-    assert march.counts["cycles"] == fem.counts["cycles"] == 1
+    assert max(march.counts["cycles"], fem.counts["cycles"]) <= 3  # as many as tell whether room is lost
     for name in "mn":
         off = abs(getattr(march, name) - getattr(fem, name)) / march.a
         assert off < march.estimate[name] + fem.estimate[name] < 2e-5

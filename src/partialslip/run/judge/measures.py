@@ -37,6 +37,8 @@ class Measure:
         NaN if one of the values is NaN; None if one of the values is None.
     undetermined : str
         Why the quantity is not judged; usually empty.
+    unsteady : str
+        Why an error is none of the method: one of both results alone is of too few cycles; usually empty.
     """
 
     quantity: str
@@ -45,6 +47,7 @@ class Measure:
     found: float | None
     error: float | None
     undetermined: str = ""
+    unsteady: str = ""
 
 
 def pressures_of(of: Traction, to: Traction) -> tuple[str, ...]:
@@ -83,7 +86,9 @@ def measures(
         if absent := _absent(quantity, reference, scene):
             yield Measure(quantity, scale, None, None, None, absent)
         else:
-            yield Measure(quantity, scale, true, found, error, _undetermined(quantity, result, reference, unknown))
+            few = unsteady(result, reference) if quantity in _SHEAR and quantity != "dQ" else ""
+            why = _undetermined(quantity, result, reference, unknown)
+            yield Measure(quantity, scale, true, found, error, why, few)
 
 
 def _absent(quantity: str, reference: Result, scene: Scene) -> str:
@@ -111,8 +116,6 @@ def unsteady(result: Result, reference: Result) -> str:
 
 def _undetermined(quantity: str, result: Result, reference: Result, unknown: Mapping[str, str]) -> str:
     """Return why the quantity is ``unknown``, or which method leaves it undetermined and why; empty if it is known."""
-    if quantity in _SHEAR and quantity != "dQ" and (why := unsteady(result, reference)):
-        return why
     key = "q" if quantity == "q_max" else quantity
     if key in unknown:
         return unknown[key]

@@ -151,16 +151,18 @@ def decide(measure: Measure, bar: Bar | None, result: Result) -> Verdict:
     """Judge one ``measure`` of the ``result`` against the ``bar``.
 
     NaN is missed with or without a bar. A value that only the reference has is missed if there is a bar. A quantity
-    that does not exist for the reference is not judged.
+    that does not exist for the reference is not judged; nor is one missed because too few cycles were asked for.
     """
     outcome, reason = _decided(measure, bar, read_to(measure.quantity, result))
+    if few := outcome is Outcome.MISSED and measure.unsteady:
+        outcome, reason = Outcome.NOT_JUDGED, few
     return Verdict(
         quantity=measure.quantity,
         outcome=outcome,
         reference=measure.reference,
         found=measure.found,
         error=measure.error,
-        bar=None if bar is None or measure.undetermined else bar.value,
+        bar=None if bar is None or measure.undetermined or few else bar.value,
         reason=reason,
         scale=measure.scale,
         estimate=result.estimate.get(base(measure.quantity)),
