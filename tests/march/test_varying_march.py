@@ -206,7 +206,7 @@ def test_regimes_at_the_bound_on_the_mean_are_not_judged():
     assert (near.outcome, near.conclusion.unjudged) == (Outcome.NOT_JUDGED, ("regime", "m", "n", "q"))
     judged = {verdict.quantity: verdict for verdict in near.comparisons["march"].verdicts}
     assert judged["regime"].outcome == Outcome.NOT_JUDGED
-    assert "nearer to the bound" in judged["regime"].reason
+    assert "too little to tell ratcheting" in judged["regime"].reason
     assert (beyond["exact"].regime, beyond["march"].regime) == ("ratchets", "ratchets")
 
 
