@@ -49,7 +49,7 @@ _FACET_SHARE = 0.25  # accuracy: largest distance of a round face from the eleme
 _OF_FACETS = {"a": 0.25, "left": 0.25, "right": 0.25, "m": 1.0, "n": 1.0}
 # accuracy: largest change of the contact due to elements at corners, as a multiple of the accuracy ...
 _CORNER_ERROR = 10.0
-LOOSEST = 1e-2  # limit: ... and absolute; also the loosest accuracy that an allowance of CPU seconds may lead to
+LOOSEST = 1e-2  # limit: ... and absolute
 # accuracy: Errors at the contact per change due to the corners of blocks.
 _TILTS = {"left": 1e-3, "right": 1e-3, "p": 5e-3, "q": 5e-3, "q1": 5e-3, "q2": 5e-3}
 
