@@ -52,7 +52,7 @@ REQUIREMENTS = {
 }
 _PART_OF = {
     **dict.fromkeys(("left", "right", "left_1", "right_1", "left_2", "right_2"), "a"),
-    **dict.fromkeys(("P", "P_1", "M", "M_1", "p_1"), "p"),
+    **dict.fromkeys(("P", "P_1", "M", "M_1", "p_1", "p_least"), "p"),
     **dict.fromkeys(("dQ", "q1", "q2"), "q"),
 }
 _CONDITIONS = ("finishes", "finite", "certificate", "estimate")
