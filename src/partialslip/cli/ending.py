@@ -70,8 +70,8 @@ def _ended(command: Callable[[], int]) -> _End:
         return _End(NO_READER)
     except OSError as error:
         return _End(REFUSED, f"{_place(error)}: {error.strerror or error}")
-    except KeyboardInterrupt:
-        return _End(INTERRUPTED, "interrupted")
+    except KeyboardInterrupt as error:
+        return _End(INTERRUPTED, ": ".join(filter(None, ("interrupted", str(error)))))
     except _Signal as error:
         return _End(128 + error.number, _SIGNALS[signal.Signals(error.number).name])
     except SystemExit as error:  # --help and --version
