@@ -48,9 +48,23 @@ def test_the_origin_is_on_the_page(page):
     assert lines.keys() == {"date", "command", "overrides", "version", "commit", "machine"}
     assert MADE.date[:10] in lines["date"]
     assert partialslip.__version__ in lines["version"]
-    text = page[: page.index("<h2>")].replace("&#39;", "'")
+    text = page[page.index("<h2>How it was run</h2>") :].replace("&#39;", "'")
     for line in lines.values():
         assert line in text
+
+
+def test_what_was_asked_is_told_before_how_it_was_run(page):
+    """After the answer; after the errors of another code, where these are scored."""
+    study = study_page("study of it", SCENE, MADE, [Section("Answer", ["yes"]), Section("Details", ["many"])])
+    run = compared(SCENE, plan(SCENE), {"exact": EXACT, "mine.csv": replace(result(a=1.1), method="mine.csv")}, 1e-3)
+    told = {
+        page: ["exact: small tension", "Scene", "Tractions", "Errors of fem", "Methods and costs", "How it was run"],
+        run_page(run, MADE): ["Errors of mine.csv", "Scene", "exact: small tension", "Tractions", "How it was run"],
+        study: ["Answer", "Scene", "Details", "How it was run"],
+    }
+    for each, titles in told.items():
+        found = re.findall("<h2>(.*?)</h2>", each)
+        assert [title for title in found if title in titles] == titles
 
 
 def test_several_origins_share_rows():

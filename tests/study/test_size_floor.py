@@ -57,12 +57,12 @@ def test_a_size_that_is_solved_below_a_level_which_more_remains_than_is_no_answe
 def test_the_answer_says_from_which_size_on():
     """Interpolated, never, bounded from either side."""
     found = trend(made_sizes(FLOOR + 0.3 * X**-1.5, 1e-6, remains=FLOOR, error=1e-6), "m")
-    assert tables._from_size(found.needed[0]) == f"from {found.needed[0].short} on"
-    assert tables._from_size(found.needed[1]) == "never (0.55 % remains)"
+    assert tables._from_size(found.needed[0]) == f" from {found.needed[0].short} on"
+    assert tables._from_size(found.needed[1]) == ": never (0.55 % remains)"
     unknown = trend(made_sizes(16 * X**-2.0, 0.0, remains=None), "m")
-    assert tables._from_size(unknown.needed[2], "mm") == "not up to 128 mm"
+    assert tables._from_size(unknown.needed[2], "mm") == ": not up to 128 mm"
     small = trend(made_sizes(1e-5 * X**-2.0, 0.0, remains=None), "m")
-    assert tables._from_size(small.needed[0]) == f"from {X.min():.4g} on at the latest"
+    assert tables._from_size(small.needed[0]) == f" from {X.min():.4g} on at the latest"
 
 
 def test_a_difference_that_grows_with_the_size_has_no_rest_that_remains():

@@ -18,6 +18,7 @@ from partialslip.scene.plausible import implausible as implausible
 from partialslip.scene.units import SI, Dimension, Units
 from partialslip.scene.writing import scene_tables
 from partialslip.tools.groups import grouped
+from partialslip.tools.methods import METHODS
 
 HEADINGS = ("quantity", "unit", "reference", "value", "error", "estimate", "bar", "")
 _MEANING = {
@@ -58,6 +59,11 @@ def beside_half_planes(run: Run, name: str) -> bool:
 def shown_half_planes(run: Run) -> bool:
     """Return whether any method of ``run`` stands :func:`beside_half_planes`."""
     return any(beside_half_planes(run, name) for name in run.comparisons)
+
+
+def scored(run: Run) -> bool:
+    """Return whether ``run`` compares results of another code."""
+    return any(result.method not in METHODS for result in run.results.values())
 
 
 def whose(run: Run, name: str) -> str:

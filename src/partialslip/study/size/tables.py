@@ -130,7 +130,7 @@ def size_answers(study: SizeStudy) -> list[str]:
     return [
         f"{NAMES[model.name]}: "
         + ", ".join(
-            f"{trend.quantity} within {percent(trend.needed[0].level)} {_from_size(trend.needed[0], unit)}"
+            f"{trend.quantity} within {percent(trend.needed[0].level)}{_from_size(trend.needed[0], unit)}"
             for trend in model.trends
         )
         for model in study.models
@@ -144,15 +144,15 @@ def percent(level: float) -> str:
 
 
 def _from_size(needed: Needed, unit: str = "") -> str:
-    """Return from which size on, in ``unit``, a level is kept, as text."""
+    """Return from which size on, in ``unit``, a level is kept, as text that follows the level."""
     unit = f" {unit}" if unit else ""
     if needed.kind is Kind.NEVER:
-        return str(needed).replace(": ", " (") + ")"
+        return ": " + str(needed).replace(": ", " (") + ")"
     if needed.kind is not Kind.BOUND:
-        return f"from {needed.short}{unit} on"
+        return f" from {needed.short}{unit} on"
     if needed.high == math.inf:
-        return f"not up to {size_text(needed.low)}{unit}" if needed.low else "not known"
-    return f"from {size_text(needed.high)}{unit} on at the latest"
+        return f": not up to {size_text(needed.low)}{unit}" if needed.low else ": not known"
+    return f" from {size_text(needed.high)}{unit} on at the latest"
 
 
 def differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str, ...], Rows]:
