@@ -27,9 +27,9 @@ def add(topics: Commands) -> None:
         help="half-planes against finite elements, over sizes of bodies or other settings",
         description="Tell from which size on bodies act like half-planes, or how other settings matter. Compare "
         "half-planes, and half-planes with the data that make them act like the bodies, with finite elements. Refined "
-        "meshes separate the "
-        "differences from the error of the mesh. One case with bodies 100 times the largest size tells what remains "
-        "however large they are; laws over the size are fitted to the rest. A stopped study continues.",
+        "meshes separate the differences from the error of the mesh. One case with bodies 100 times the largest size "
+        "tells what remains however large they are; laws over the size are fitted to the rest. A stopped study "
+        "continues.",
         examples=[
             "partialslip study size block.toml --over bodies.*.width+bodies.*.height=4a..256a",
             "partialslip study size rig.toml --over bodies.lower.thickness=5,10,20 --level 2%",
@@ -74,6 +74,8 @@ def _size(options: argparse.Namespace) -> int:
 
     scene = partialslip.load_scene(options.scene, options.overrides)
     axes = [axis(text) for text in options.over]
+    if len(axes) > 1 and (options.levels or options.quantities):
+        raise InputError("--over: given twice: must be given once with --level or --show, as a map has all quantities")
     for each in axes if len(axes) > 1 else []:
         if len(set(each.values)) < 2 or min(each.values) <= 0:
             raise InputError(f"--over {each.name}: must have at least 2 values, all > 0, for a map")
@@ -84,7 +86,7 @@ def _size(options: argparse.Namespace) -> int:
     shown = criteria_of(scene, names)  # before anything is solved
     asked, below = quantities_of(scene, quantities, shown, names is not None), levels(options.levels)
     if foreign := [key for key in below if key and key not in asked]:
-        raise InputError(f"--level {foreign[0]}=...: must be of {', '.join(asked)}; --show names others")
+        raise InputError(f"--level {foreign[0]}=: must be of {', '.join(asked)}; --show names others")
     name = f"{scene.name}-size"
 
     def find(folder: Path) -> Findings:
