@@ -9,7 +9,7 @@ import numpy as np
 
 from partialslip.study.size.case import EQUIVALENT, HALF_PLANE
 from partialslip.study.size.law import Kind, Needed, Sizes, Trend
-from partialslip.study.size.tables import NAMES, SizeStudy, percent
+from partialslip.study.size.tables import NAMES, SizeStudy, percent, size_text
 from partialslip.tools.arrays import Array
 from partialslip.tools.output.svg import svg
 
@@ -56,7 +56,7 @@ def size_svg(study: SizeStudy) -> str:
             axes.spines["left"].set_bounds(low, high)
             axes.spines["bottom"].set_bounds(*axes.get_xticks()[[0, -1]])
         panels[-1].set_xlabel(textwrap.fill(study.label, _LABEL), fontsize=9)
-        figure.legend(handles=_keys(study), loc="outside lower left", ncols=2, frameon=False, fontsize=8.5)
+        figure.legend(handles=_keys(study, low), loc="outside lower left", ncols=2, frameon=False, fontsize=8.5)
 
     return svg(draw, (_WIDTH, _HIGH * len(found) + 1.1))
 
@@ -110,23 +110,17 @@ def _draw_trend(axes: "Axes", study: SizeStudy, model: Sizes, trend: Trend, bott
     if trend.floor and trend.floor.clear and abs(trend.floor.value) > bottom:
         axes.axhline(abs(trend.floor.value), **_REMAINS, zorder=1)
     for needed in trend.needed:
-        _draw_needed(axes, needed, model.name, bottom, _farthest(study))
+        _draw_needed(axes, needed, bottom, _farthest(study))
 
 
-def _draw_needed(axes: "Axes", needed: Needed, model: str, bottom: float, farthest: float) -> None:
-    """Mark the size for one level, and its number: the half-plane's above the level's line, on the right of the
-    falling difference, that of equivalent half-planes below it, on the left."""
+def _draw_needed(axes: "Axes", needed: Needed, bottom: float, farthest: float) -> None:
+    """Mark the size for one level, and its number where the falling difference leaves room: above, on the right."""
     spread = needed.kind in (Kind.EXTRAPOLATED, Kind.BOUND) and needed.high < math.inf
     if spread and 0 < needed.low < (high := min(needed.high, farthest)):
         axes.plot([needed.low, high], [needed.level] * 2, **_INTERVAL, zorder=2)
-    if not needed.size <= farthest:
-        return
-    axes.plot([needed.size] * 2, [needed.level, bottom], **_MARK, markevery=[1], clip_on=False, zorder=2)
-    above = model == HALF_PLANE
-    axes.annotate(
-        needed.short, (needed.size, needed.level), (2, 2) if above else (-2, -2), textcoords="offset points",
-        fontsize=8.5, ha="left" if above else "right", va="bottom" if above else "top", zorder=4,
-    )  # fmt: skip
+    if needed.size <= farthest:
+        axes.plot([needed.size] * 2, [needed.level, bottom], **_MARK, markevery=[1], clip_on=False, zorder=2)
+        axes.annotate(needed.short, (needed.size, needed.level), **_NUMBER)
 
 
 def _farthest(study: SizeStudy) -> float:
@@ -164,7 +158,7 @@ def _put_ticks(axis: "XAxis | YAxis", values: Sequence[float], room: Callable[[s
     logarithms."""
     from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 
-    texts = [f"{value:.3g}" for value in values]
+    texts = [size_text(value) for value in values]
     places = [(math.log(value), 0.5 * room(text)) for value, text in zip(values, texts, strict=True)]
     free, last, labels = -math.inf, places[-1][0] - places[-1][1], []
     for number, (text, (at, half)) in enumerate(zip(texts, places, strict=True)):
@@ -185,12 +179,16 @@ _LEVEL: dict[str, Any] = {"color": "0.5", "lw": 0.7}
 _BEYOND: dict[str, Any] = {"color": "black", "lw": 1.0, "ls": ":"}
 _MESH: dict[str, Any] = {"color": "0.9", "lw": 0, "zorder": -1}
 _MARK: dict[str, Any] = {"color": "black", "lw": 0.8, "ls": (0, (3, 2)), "marker": "v", "ms": 4}
+_NUMBER: dict[str, Any] = {
+    "xytext": (2, 4), "textcoords": "offset points", "fontsize": 8.5, "zorder": 2.5,
+    "bbox": {"fc": "white", "ec": "none", "pad": 0.4},
+}  # fmt: skip
 _INTERVAL: dict[str, Any] = {"color": "0.6", "lw": 3.0, "solid_capstyle": "butt"}
 _REMAINS: dict[str, Any] = {"color": "0.4", "lw": 1.4, "ls": (0, (6, 1.5, 1, 1.5))}
 _FAILED: dict[str, Any] = {"color": "0.5", "lw": 1.2, "ls": (0, (1, 2))}
 
 
-def _keys(study: SizeStudy) -> "list[Artist]":
+def _keys(study: SizeStudy, low: float) -> "list[Artist]":
     """Return the entries of the legend: of what is drawn."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -206,7 +204,7 @@ def _keys(study: SizeStudy) -> "list[Artist]":
         ("remains at an infinite size", _REMAINS, any(trend.floor and trend.floor.clear for trend in trends)),
         ("not solved", _FAILED, bool(_failed(study))),
     ]  # fmt: skip
-    mesh = any((each > 0).any() for each in study.models[0].mesh.values())
+    mesh = any((each > low).any() for each in study.models[0].mesh.values())
     patches = [Patch(label="error of the mesh", color=_MESH["color"])] if mesh else []
     return [*(Line2D([], [], label=label, **style) for label, style, drawn in entries if drawn), *patches]
 
