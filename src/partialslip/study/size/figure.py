@@ -198,10 +198,10 @@ def _keys(study: SizeStudy, low: float) -> "list[Artist]":
     between = any(each.kind is Kind.BOUND and 0 < each.low < each.high < math.inf for each in needed)
     entries: list[tuple[str, dict[str, Any], bool]] = [
         *((NAMES[model.name], {"color": "black", **_MODELS[model.name]}, True) for model in study.models),
-        ("from here on within the level", _MARK, any(math.isfinite(each.size) for each in needed)),
+        ("size needed", _MARK, any(math.isfinite(each.size) for each in needed)),
         ("law", _BEYOND, _farthest(study) > max(_all_sizes(study))),
         ("the size lies within", _INTERVAL, between or any(each.kind is Kind.EXTRAPOLATED for each in needed)),
-        ("remains at an infinite size", _REMAINS, any(trend.floor and trend.floor.clear for trend in trends)),
+        ("at an infinite size", _REMAINS, any(trend.floor and trend.floor.clear for trend in trends)),
         ("not solved", _FAILED, bool(_failed(study))),
     ]  # fmt: skip
     mesh = any((each > low).any() for each in study.models[0].mesh.values())
