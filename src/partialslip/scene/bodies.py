@@ -18,6 +18,24 @@ class Holder(Table, frozen=True, kw_only=True):
     height: Positive
 
 
+Name = Annotated[str, msgspec.Meta(min_length=1)] | int
+
+
+class Groups(Table, frozen=True, kw_only=True):
+    """What a mesh file calls the lines of a body's boundary: names, or numbers of physical groups."""
+
+    contact: Name | None = None
+    face: Name | None = None
+    back: Name | None = None
+    left: Name | None = None
+    right: Name | None = None
+
+    @property
+    def given(self) -> dict[str, str | int]:
+        """Names in the file by line, of those that are given."""
+        return {line: name for line in self.__struct_fields__ if (name := getattr(self, line)) is not None}
+
+
 class Body(Table, frozen=True, kw_only=True):
     """A finite body, in contact in the middle of its face.
 
@@ -45,8 +63,8 @@ class Body(Table, frozen=True, kw_only=True):
     holder: Holder | None = None
     mesh: Annotated[str, msgspec.Meta(min_length=1)] | None = None
     unit: Positive | None = None
-    body: Annotated[str, msgspec.Meta(min_length=1)] | int | None = None
-    groups: dict[Literal["contact", "face", "back", "left", "right"], str | int] | None = None
+    body: Name | None = None
+    groups: Groups | None = None
     support: Literal["clamped", "roller", "sides", "pivot"] = "clamped"
     pivot_height: Annotated[float, msgspec.Meta(ge=0)] | None = None
     pulled: bool = False
