@@ -131,6 +131,9 @@ def key_of(scene: Scene) -> str:
         del own["pivot_height"]  # no body with a rig pivots
         if not body.gripped:  # a given share of Q is part of the loads
             del own["right_grip"]
+        for key in ("body", "groups"):  # of a mesh file; files of rigs from before know none
+            if own[key] is None:
+                del own[key]
         if body.mesh is not None:
             own["mesh"] = checksum(body.mesh, LARGEST_MESH)
     parts = [bodies, scene.material, scene.profile if scene.bodies.pad else None]
