@@ -13,7 +13,7 @@ from partialslip.friction.history import History
 from partialslip.halfplane import contact_of
 from partialslip.halfplane.gradual_path import slips
 from partialslip.halfplane.turning import Turning, half_cycle
-from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import norm_errors
 from partialslip.verify.hard_cases.scenes import hard_scene
 
 UNIT = contact_of(lambda x: np.sqrt(1 - x**2), 1.0)

@@ -5,7 +5,7 @@ A file is sealed (:mod:`partialslip.tools.seal`), and its outcomes are concluded
 
 import inspect
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +15,10 @@ from msgspec.structs import replace
 from partialslip.halfplane.noise import Noise
 from partialslip.result.record import JsonNumber, ResultRecord, record_of
 from partialslip.run import Run
-from partialslip.run.judge import Comparison, Outcome, Verdict, conclude, of_run
-from partialslip.run.judge.outcome import missed_by
-from partialslip.run.judge.recorded import conditions_again, judged_again
+from partialslip.run.judge import Comparison, Outcome, Verdict, conclude, conditions, of_run
+from partialslip.run.judge.comparison import judged_again
 from partialslip.run.judge.reference import reference_among
+from partialslip.run.judge.verdicts import missed_by
 from partialslip.scene import Scene
 from partialslip.scene.plan import Effect, Plan
 from partialslip.tools.errors import InputError
@@ -83,10 +83,9 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
     @classmethod
     def of(cls, comparison: Comparison) -> "ComparisonRecord":
         """Make the record of ``comparison``."""
-        verdicts, conditions = (
-            tuple(verdict.finite for verdict in some) for some in (comparison.verdicts, comparison.conditions)
+        return record_of(
+            cls, comparison, verdicts=_finite(comparison.verdicts), conditions=_finite(comparison.conditions)
         )
-        return record_of(cls, comparison, verdicts=verdicts, conditions=conditions)
 
     def judged_again(
         self, result: ResultRecord, reference: ResultRecord, conditions: tuple[Verdict, ...]
@@ -103,6 +102,10 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
             verdicts=verdicts,
             conditions=conditions,
         )
+
+
+def _finite(verdicts: Iterable[Verdict]) -> tuple[Verdict, ...]:
+    return tuple(verdict.finite for verdict in verdicts)
 
 
 class Record(ByMethod[ResultRecord], msgspec.Struct, frozen=True):
@@ -171,7 +174,7 @@ class Record(ByMethod[ResultRecord], msgspec.Struct, frozen=True):
         Comparisons with a reference that is none for the scene make no run pass.
         """
         told = {name: each.conditions for name, each in self.comparison.items()}
-        known = {name: conditions_again(each, told.get(name, ())) for name, each in self.methods.items()}
+        known = {name: _finite(conditions(each, told.get(name, ()))) for name, each in self.methods.items()}
         reference = self.methods.get(self.reference or "")
         comparison = {
             name: each.judged_again(self.methods[name], reference, known[name])

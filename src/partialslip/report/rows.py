@@ -10,7 +10,7 @@ from partialslip.report.answer import HALF_PLANES, NOT_ESTIMATED, dissipated, sc
 from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.run.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
-from partialslip.run.judge.known import error_of
+from partialslip.run.judge.reference import error_of
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.plan import Plan

@@ -21,6 +21,19 @@ _MOVED = {
     ),
 }
 NEW_NAMES = {name: f"{folder}.{name}" for folder, names in _MOVED.items() for name in names.split()}
+_MERGED = {  # modules that became part of another one, of the same folder
+    "run.judge.measures": "means",
+    "run.judge.reference": "known",
+    "run.judge.verdicts": "verdict outcome estimates",
+}
+_NEW_MODULES = {f"{new.rpartition('.')[0]}.{name}": new for new, names in _MERGED.items() for name in names.split()}
+
+
+def new_name(old: str) -> str:
+    """Return the name under ``partialslip`` of what was the module ``old``; the same name if it has not moved."""
+    first, dot, deeper = old.partition(".")
+    moved = f"{NEW_NAMES.get(first, first)}{dot}{deeper}"
+    return _NEW_MODULES.get(moved, moved)
 
 
 class _SameModule:
@@ -43,11 +56,10 @@ class MovedNames:
 
     def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
         """Return the module under its new name; None for all other names."""
-        package, __, rest = fullname.partition(".")
-        old, dot, deeper = rest.partition(".")
-        if package != "partialslip" or old not in NEW_NAMES:
+        package, __, old = fullname.partition(".")
+        new = f"{package}.{new_name(old)}"
+        if package != "partialslip" or new == fullname:
             return None
-        new = f"partialslip.{NEW_NAMES[old]}{dot}{deeper}"
         warnings.warn(f"{fullname} is now {new}", DeprecationWarning, stacklevel=2)
         return ModuleSpec(fullname, _SameModule(new))  # type: ignore[arg-type]  # importlib.abc imports slowly
 

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from partialslip.result import Result
 from partialslip.run import run
-from partialslip.run.judge.means import means
+from partialslip.run.judge.measures import means
 from partialslip.run.judge.reference import reference
 from partialslip.scene import Hertz
 from partialslip.tools.arrays import Array
