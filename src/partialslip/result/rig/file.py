@@ -10,10 +10,8 @@ import numpy as np
 from partialslip.result.rig.rig import Rig, Terms, key_of
 from partialslip.scene import Scene
 from partialslip.tools.errors import InputError
-from partialslip.tools.inputfile import read_bytes
 from partialslip.tools.output.files import write_texts
-from partialslip.tools.seal import edited, sealed_text
-from partialslip.tools.strictjson import converted, parsed
+from partialslip.tools.seal import read_sealed, sealed_text
 
 RIG_SCHEMA = "partialslip/rig/2"
 _LARGEST = 2**20  # limit: bytes
@@ -69,12 +67,7 @@ def load_rig(path: str | os.PathLike[str], scene: Scene | None = None) -> Rig:
     InputError
         If the file cannot be read or is not a rig, or is that of other bodies than those of ``scene``.
     """
-    text, told = read_bytes(path, _LARGEST), f"{path}: not a rig"
-    tree = parsed(text, told)
-    changed = isinstance(tree, dict) and bool(edited(text, tree))
-    found = converted(tree, _File, told)
-    if found.schema != RIG_SCHEMA:
-        raise InputError(f"{path}: schema = {found.schema!r}: must be {RIG_SCHEMA!r}")
+    found, changed = read_sealed(path, _LARGEST, _File, RIG_SCHEMA, "not a rig", "partialslip equivalent makes it")
     count = len(found.terms.xx)
     terms, rough = (_arrays(f"{path}: {name}", getattr(found, name), count) for name in ("terms", "rough"))
     if scene and found.key != key_of(scene):
@@ -82,7 +75,7 @@ def load_rig(path: str | os.PathLike[str], scene: Scene | None = None) -> Rig:
             f"{path}: this rig has other bodies, supports or materials than {scene.name}; "
             "must be made from them: partialslip equivalent"
         )
-    return Rig(found.key, found.reach, terms, rough, changed or found.edited)
+    return Rig(found.key, found.reach, terms, rough, bool(changed) or found.edited)
 
 
 def _arrays(name: str, found: _Terms, count: int) -> Terms:

@@ -6,7 +6,7 @@ which quantities are the headline.
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, NamedTuple, Self
 
@@ -112,7 +112,7 @@ class Verdict:
     @property
     def finite(self) -> Self:
         """The verdict for JSON: Python floats, with None in place of NaN and infinity."""
-        return replace(self, **{key: plain(value) for key, value in vars(self).items()})
+        return plain(self)
 
     @property
     def text(self) -> str:
