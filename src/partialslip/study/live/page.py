@@ -1,5 +1,4 @@
-"""The live page: one self-contained HTML file. The mechanics are in the folder of this module, in ``hertz.js`` for
-constant P without a moment, and in ``varying.js``."""
+"""The live page: one self-contained HTML file. Its mechanics are in ``hertz.js``: constant P, without a moment."""
 
 import functools
 import math
@@ -24,7 +23,7 @@ _SHAPE = 1.5  # display: width over height of the map on the page
 _NAMES = np.array([(0.05, 0.94), (0.12, 0.94), (0.19, 0.94), (0.8, 0.03), (0.88, 0.03), (0.96, 0.03)])  # regime names
 _SOLVED = {  # fields that the page takes into account; any other that is given is refused
     "profile": ("R",),
-    "load": ("P", "a", "p0", "M", "e", "Q", "sigma", "cycles", "steps"),
+    "load": ("P", "a", "p0", "Q", "sigma", "cycles", "steps"),
     "effects": (),
 }
 _ROUNDED = 5  # accuracy: decimals of the map's lines
@@ -36,14 +35,14 @@ _TOP, _HIGHEST = 10.0, 40.0
 def live_page(scene: Scene) -> str:
     """Return the live page of ``scene`` as HTML: sliders for the loads, tractions and stick zone.
 
-    The sliders start at the loads of the scene. P and its line of action may differ between the load points. Finite
-    bodies are left out, and the page says so: it shows half-planes under the same loads.
+    The sliders start at the loads of the scene. Finite bodies are left out, and the page says so: it shows
+    half-planes under the same loads.
 
     Raises
     ------
     InputError
         If the profile is not ``hertz``, the bodies' materials differ, an effect is forced on or off, displacements
-        drive the bodies, there is no friction, or the loads are out of phase.
+        drive the bodies, there is no friction, P varies or has a moment, or the loads are out of phase.
     """
     _check(scene)
     return (
@@ -77,6 +76,8 @@ def _check(scene: Scene) -> None:
     scene.require_uniform_friction("for a live page")
     if not scene.load.in_phase:
         raise InputError(f"load: {scene.varying} are out of phase; must be in phase for a live page")
+    if scene.presses_anew:
+        raise InputError("load: P varies; must be constant for a live page")
 
 
 def _data(scene: Scene) -> dict[str, Any]:
@@ -86,16 +87,12 @@ def _data(scene: Scene) -> dict[str, Any]:
     """
     pressed, load, f, units = contact(scene), scene.load, scene.friction.f, scene.units
     sf = abs(load.dsigma) / (f * pressed.p0)
-    one, two = scene.end_pressing
     return {
         "name": scene.name,
         "title": scene.title,
         "a": pressed.a,
         "p0": pressed.p0,
         "P": pressed.P,
-        "pressed": {"P1": one.P, "P2": two.P, "e1": (one.M or 0.0) / one.P, "e2": (two.M or 0.0) / two.P},
-        "varies": scene.presses_anew or bool(scene.M),
-        "largest": scene.largest,
         "f": f,
         "most_friction": max(1.5, 2 * f),
         "dQ": load.dQ,
