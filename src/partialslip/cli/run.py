@@ -86,7 +86,7 @@ def _run(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import working
     from partialslip.report import write_run
     from partialslip.run import default_methods
-    from partialslip.study.fatigue.of_run import criteria_sections
+    from partialslip.study.fatigue.page import criteria_sections
     from partialslip.tools.output.files import write_files
 
     counted, allowance = options.accuracy is not None or budget is not None, None

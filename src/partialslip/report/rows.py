@@ -15,8 +15,8 @@ from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.plan import Plan
 from partialslip.scene.plausible import implausible as implausible
+from partialslip.scene.reading import scene_tables
 from partialslip.scene.units import SI, Dimension, Units
-from partialslip.scene.writing import scene_tables
 from partialslip.tools.groups import grouped
 
 HEADINGS = ("quantity", "unit", "reference", "value", "error", "estimate", "bar", "")

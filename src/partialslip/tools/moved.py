@@ -21,12 +21,31 @@ _MOVED = {
     ),
 }
 NEW_NAMES = {name: f"{folder}.{name}" for folder, names in _MOVED.items() for name in names.split()}
-_MERGED = {  # modules that became part of another one, of the same folder
-    "run.judge.measures": "means",
-    "run.judge.reference": "known",
-    "run.judge.verdicts": "verdict outcome estimates",
+_MERGED = {  # modules that became part of another one
+    "codes.export.inp": "codes.export: abaqus calculix inp_lines",
+    "result.below": "result: piecewise",
+    "result.cost": "result: memory",
+    "result.rig": "result.rig: file rig",
+    "run.judge.measures": "run.judge: means",
+    "run.judge.reference": "run.judge: known",
+    "run.judge.verdicts": "run.judge: verdict outcome estimates",
+    "scene.measured": "scene: points",
+    "scene.reading": "scene: writing",
+    "study.cost": "study.cost: ladder figure",
+    "study.effects": "study.effects: worth figure",
+    "study.fatigue.assessment": "study.fatigue: accuracy",
+    "study.fatigue.criteria": "study.fatigue: invariants",
+    "study.fatigue.page": "study.fatigue: of_run",
+    "study.live": "study.live: page",
+    "study.map.figure": "study.map: varying_figure",
+    "verify.hard_cases.bodies": "verify.hard_cases: finite",
 }
-_NEW_MODULES = {f"{new.rpartition('.')[0]}.{name}": new for new, names in _MERGED.items() for name in names.split()}
+_NEW_MODULES = {
+    f"{folder}.{name}": new
+    for new, told in _MERGED.items()
+    for folder, _, names in [told.partition(": ")]
+    for name in names.split()
+}
 
 
 def new_name(old: str) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from partialslip.codes.export.inp_lines import deck_heading
+from partialslip.codes.export.inp import deck_heading
 from partialslip.codes.export.model import Model
 from partialslip.codes.export.parts import MeshedBody
 from partialslip.scene import Scene

@@ -9,7 +9,7 @@ import msgspec
 
 from partialslip.report import rows
 from partialslip.report.sketch import sketch_svg
-from partialslip.scene.writing import scene_toml, set_tables
+from partialslip.scene.reading import scene_toml, set_tables
 from partialslip.tools.origin import Made, origin_lines
 from partialslip.tools.output.files import csv_text, json_text, zipped
 from partialslip.tools.output.page import render_page

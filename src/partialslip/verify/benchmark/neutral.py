@@ -7,8 +7,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from partialslip.codes.export import UNTESTED_DECKS
-from partialslip.codes.export.abaqus import abaqus_deck
-from partialslip.codes.export.calculix import calculix_deck
+from partialslip.codes.export.inp import abaqus_deck, calculix_deck
 from partialslip.codes.export.model import Model, modelled
 from partialslip.codes.export.named_boundaries import UNTESTED
 from partialslip.scene import Scene
