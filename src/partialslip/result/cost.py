@@ -18,7 +18,7 @@ except ImportError:  # Windows
     resource = None  # type: ignore[assignment]
 
 _STATUS, _CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
-# accuracy: MB by which the mark may exceed the present memory without a reset: the kernel counts in batches
+# limit: MB by which the mark may exceed the present memory without a reset: the kernel counts in batches
 _SLACK = 1.0
 _before_resets = 0.0  # MB, highest mark that a reset has removed
 

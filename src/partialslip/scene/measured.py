@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 _LARGEST = 20_000_000  # limit: bytes of a file of points
 _FEWEST = 10  # limit: points
 _COLUMNS = 2  # fixed: x and gap
-_SAME_UNIT = 1e-12  # accuracy: difference of units, relative, that is rounding
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
 _BRACKETS = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
 _WORD = re.compile(r"[^\W\d_]+")
@@ -35,9 +34,9 @@ _IN_FULL = re.compile(
     r"\N{LATIN CAPITAL LETTER A WITH RING ABOVE}|angstroms?|pm|km|dm",
     re.IGNORECASE,
 )
-_COARSEST, _MOST = 3, 1000  # accuracy: intervals and points of a table
+_COARSEST, _MOST = 3, 1000  # limit: intervals and points of a table
 _SURE = 5.0  # accuracy: standard deviations of a mean over a smoothing length that are not taken for noise
-_ROUNDING = 1e-12  # accuracy: misfit, relative to the largest gap, that is not taken for noise
+_ROUNDING = 1e-12  # accuracy: relative: difference of units, and misfit in the largest gap, that is taken for rounding
 # msgspec 0.20 fails on a union of a number and a tuple of fixed length
 ColumnUnit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=2, max_length=2)]
 
@@ -78,7 +77,7 @@ def column_units(file: str, given: float | tuple[float, ...] | None, length: flo
             )
         return (stated[0], stated[-1]) if stated else (1.0, 1.0)
     x, gap = given if isinstance(given, tuple) else (given, given)
-    if stated and not np.allclose((x, gap), stated, rtol=_SAME_UNIT, atol=0.0):
+    if stated and not np.allclose((x, gap), stated, rtol=_ROUNDING, atol=0.0):
         raise InputError(f"profile.unit = {[x, gap]}: must be that of the heading of {file}, {shown}, or be left out")
     return x, gap
 

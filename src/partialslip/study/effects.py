@@ -39,7 +39,7 @@ COSTS = {
     "load_steps": "steps",
     "back_solves": "back-solves",
 }
-_REPEATS = 2  # accuracy: runs per setting; the one with the least CPU time counts
+_REPEATS = 2  # cost: runs per setting; the one with the least CPU time counts
 _LEAST = 1e-14  # display: smaller changes are drawn here
 _MARKS = {"a": ("o", "white"), "m": ("<", "white"), "n": (">", "white"), "q": ("s", "black"), "q2": ("D", "0.7")}
 

@@ -38,6 +38,8 @@ _MERGED = {  # modules that became part of another one
     "study.fatigue.page": "study.fatigue: of_run",
     "study.live": "study.live: page",
     "study.map.figure": "study.map: varying_figure",
+    "verify.benchmark.book": "verify.benchmark: figure",
+    "verify.hard_cases": "verify.hard_cases: scenes",
     "verify.hard_cases.bodies": "verify.hard_cases: finite",
 }
 _NEW_MODULES = {

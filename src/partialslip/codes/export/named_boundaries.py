@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from partialslip_meshes import QuadMesh
 
 UNTESTED = "untested"  # part of file names: nobody of the project has run these decks
-_STRAIGHT = 1e-9  # accuracy: largest change of the normal along a side, which is then straight
+_STRAIGHT = 1e-9  # limit: largest change of the normal along a side, which is then straight
 
 
 @dataclass(frozen=True)

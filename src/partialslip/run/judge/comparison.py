@@ -29,7 +29,7 @@ from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.tools.bars import Accuracy, asked
 from partialslip.tools.shown import Notebook
 
-# accuracy: Difference, in a, of an error from that of the lengths of the file. Below it the error of the file counts:
+# limit: Difference, in a, of an error from that of the lengths of the file. Below it the error of the file counts:
 # errors of tiny stick zones are computed without cancellation.
 _ROUNDING = 1e-9
 

@@ -21,8 +21,8 @@ NORM = "norm"
 _SHEAR = ("m", "n", "dQ", "q", "q_max", "q1", "q2")  # quantities of friction in steady partial slip
 
 
-_NEAR = 3.0  # accuracy: contact half-widths within which stresses inside are compared
-_POINTS = 60  # accuracy: along each side of the square of points
+_NEAR = 3.0  # fixed: contact half-widths within which stresses inside are compared
+_POINTS = 60  # fixed: along each side of the square of points
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 

@@ -35,7 +35,7 @@ ESTIMATE = "estimate of "
 # Estimates do not include rounding: 1e-9 a, or 1e-9 of f p, as in the residuals of converged solvers. Errors of the
 # shear are relative to its norm, or to a part of the norm of f p where the shear is smaller.
 _ROUNDING = {"q": 1e-9 / LEAST_SHEAR, "q1": 1e-9 / LEAST_SHEAR, "q2": 1e-9 / LEAST_SHEAR}
-_NOTHING = 0.01  # accuracy: of the bar: errors that matter to nobody need no estimate
+_NOTHING = 0.01  # limit: of the bar: errors that matter to nobody need no estimate
 _STICK = ("a", "m", "n", "p", "q")  # with a stick zone
 #: Quantities that must be judged, by the regime of the reference where there is no stick zone to ask for. The regime
 #: itself must be judged there: nothing else says that nothing sticks.

@@ -26,7 +26,7 @@ _SOLVED = {  # fields that the page takes into account; any other that is given 
     "load": ("P", "a", "p0", "Q", "sigma", "cycles", "steps"),
     "effects": (),
 }
-_ROUNDED = 5  # accuracy: decimals of the map's lines
+_ROUNDED = 5  # display: decimals of the map's lines
 _DECIMALS = 7  # accuracy: of the table of gradual zones: its patches stay within 1e-4 a
 # display: dsigma/(f p0) at the map's top, more for scenes with more, up to the second number
 _TOP, _HIGHEST = 10.0, 40.0

@@ -5,7 +5,7 @@ from typing import Any
 
 from partialslip.scene import Scene
 from partialslip.verify.case import Case
-from partialslip.verify.hard_cases.scenes import MANY_CYCLES, family, hard_scene
+from partialslip.verify.hard_cases import MANY_CYCLES, family, hard_scene
 
 # limit: dissimilar bodies with the mean compliance of the other cases, whose Dundurs' constant beta is 0.3
 _UNLIKE: Mapping[str, Any] = {"upper": {"E": 210e9, "nu": 0.3}, "lower": {"E": 48e9, "nu": 0.1}}

@@ -9,8 +9,7 @@ from collections.abc import Iterable, Iterator
 from partialslip.scene.reading import load_scene, shipped_scenes
 from partialslip.tools.groups import grouped
 from partialslip.verify.case import Case
-from partialslip.verify.hard_cases import bodies, histories, loads, meshes
-from partialslip.verify.hard_cases.scenes import Family
+from partialslip.verify.hard_cases import Family, bodies, histories, loads, meshes
 
 _HEAD = """# Hard cases
 
