@@ -218,16 +218,16 @@ def judge_regime(
         outcome, reason = Outcome.NOT_JUDGED, own.reason or NO_BAR
     elif found == true:
         outcome, reason = Outcome.PASSED, ""
-    elif "m" in unknown:
-        outcome, reason = Outcome.NOT_JUDGED, unknown["m"]
-    elif not all(map(math.isfinite, own_errors)):
-        outcome, reason = Outcome.NOT_JUDGED, f"{reference.method} has no error estimate of m and n"
-    elif why := unsteady(result, reference) or _untold(result, reference):
-        outcome, reason = Outcome.NOT_JUDGED, why
-    elif near := _too_near(result, reference, width * reference.a) or _barely(result, reference, scene, width):
-        outcome, reason = Outcome.NOT_JUDGED, near
     else:
-        outcome, reason = Outcome.MISSED, f"{found}, not {true}"
+        why = (
+            unknown.get("m")
+            or ("" if all(map(math.isfinite, own_errors)) else f"{reference.method} has no error estimate of m and n")
+            or unsteady(result, reference)
+            or _untold(result, reference)
+            or _too_near(result, reference, width * reference.a)
+            or _barely(result, reference, scene, width)
+        )
+        outcome, reason = (Outcome.NOT_JUDGED, why) if why else (Outcome.MISSED, f"{found}, not {true}")
     return Verdict("regime", outcome, true, found, reason=reason)
 
 
