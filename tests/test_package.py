@@ -45,6 +45,17 @@ print(sys.modules["partialslip.{old}"] is found, found.__spec__.name == name)"""
     assert f"DeprecationWarning: partialslip.{old} is now {new}" in done.stderr
 
 
+@pytest.mark.parametrize("name", ["study.cost.ladder", "verify.benchmark.badge"])
+def test_a_function_is_not_hidden_by_its_former_module(name):
+    home, _, function = name.rpartition(".")
+    code = f"""import partialslip.{home}, importlib, sys
+before = partialslip.{home}.{function}
+module = importlib.import_module("partialslip.{name}")
+print(partialslip.{home}.{function} is before is module.{function})"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "True\n"
+
+
 def test_other_names():
     assert partialslip.scene.Material(E=1e9, nu=0.3).nu == 0.3
     with pytest.raises(AttributeError, match="module 'partialslip' has no attribute 'loadscene'"):

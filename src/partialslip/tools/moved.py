@@ -39,6 +39,7 @@ _MERGED = {  # modules that became part of another one
     "study.live": "study.live: page",
     "study.map.figure": "study.map: varying_figure",
     "verify.benchmark.book": "verify.benchmark: figure",
+    "verify.benchmark.scoreboard": "verify.benchmark: badge",
     "verify.hard_cases": "verify.hard_cases: scenes",
     "verify.hard_cases.bodies": "verify.hard_cases: finite",
 }
@@ -55,6 +56,14 @@ def new_name(old: str) -> str:
     first, dot, deeper = old.partition(".")
     moved = f"{NEW_NAMES.get(first, first)}{dot}{deeper}"
     return _NEW_MODULES.get(moved, moved)
+
+
+class _Keeping(ModuleType):
+    """A module whose functions keep their names when a former module of the same name is imported."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (isinstance(value, ModuleType) and callable(vars(self).get(name))):
+            super().__setattr__(name, value)
 
 
 class _SameModule:
@@ -75,12 +84,16 @@ class _SameModule:
 class MovedNames:
     """Finds ``partialslip.<old name>`` under its new name, and warns once for each place of use."""
 
-    def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
+    def find_spec(self, fullname: str, *__: object) -> ModuleSpec | None:
         """Return the module under its new name; None for all other names."""
-        package, __, old = fullname.partition(".")
+        package, _, old = fullname.partition(".")
         new = f"{package}.{new_name(old)}"
         if package != "partialslip" or new == fullname:
             return None
+        parent, _, child = fullname.rpartition(".")
+        holds = sys.modules[parent]
+        if type(holds) is ModuleType and callable(vars(holds).get(child)):
+            holds.__class__ = _Keeping
         warnings.warn(f"{fullname} is now {new}", DeprecationWarning, stacklevel=2)
         return ModuleSpec(fullname, _SameModule(new))  # type: ignore[arg-type]  # importlib.abc imports slowly
 

@@ -225,5 +225,5 @@ const hertz = (() => {
     return taken;
   }
 
-  return { gradualZone, insideOf, largest, meanLoadBound, pressure, reverses, stickZone, tractions, transition };
+  return { gradualZone, largest, meanLoadBound, pressure, reverses, stickZone, tractions, transition };
 })();
