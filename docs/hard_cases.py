@@ -16,8 +16,8 @@ from partialslip.scene import Fem, Scene
 from partialslip.tools.groups import grouped
 from partialslip.verify import FAMILIES
 from partialslip.verify.case import Case
+from partialslip.verify.hard_cases import YOUNG
 from partialslip.verify.hard_cases.catalogue import catalogue_page
-from partialslip.verify.hard_cases.scenes import YOUNG
 
 DOCS = Path(__file__).parent
 MEASURED = DOCS.parent / "benchmarks" / "hard_cases.csv"

@@ -14,7 +14,7 @@ from partialslip.march import punch_growth, unlike
 from partialslip.march.punch_growth import PunchGrowth, goodman_stick_zone, relative
 from partialslip.march.unlike import dundurs
 from partialslip.result import Clock
-from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import norm_errors
 from partialslip.scene.plan import plan
 
 STEEL = ("material.upper.E=210e9", "material.upper.nu=0.3", "load.cycles=2")

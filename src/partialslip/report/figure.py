@@ -11,7 +11,7 @@ from partialslip.report.rows import shown_half_planes
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Friction, Scene, Tabulated
-from partialslip.scene.points import read_points
+from partialslip.scene.measured import read_points
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 from partialslip.tools.methods import METHODS
