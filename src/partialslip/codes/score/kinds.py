@@ -22,6 +22,12 @@ class Average(NamedTuple):
     kind: Kind
     points: int = 1
 
+    @property
+    def rises(self) -> int:
+        """Points beside the end of a square root over which its averages may rise steeper and steeper, seen from the
+        first zero: one, and those that an average over w spacings takes, whose steepest secant is 1.16 w long."""
+        return 1 + int(1.2 * (self.points - 1 + _INTEGRALS[self.kind]))
+
     def begins(self, x: Array, at: int) -> float:
         """Left end, m, of the piece of the contact line that tells in the value at point ``at`` of ``x`` (n,), m."""
         points = _points(x, np.array([at - self.points // 2]))
