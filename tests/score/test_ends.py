@@ -129,6 +129,18 @@ def test_averages_of_powers(average):
             assert (own[0] > 0) == (end > average.begins(x, i))
 
 
+@pytest.mark.parametrize("average", EVERY, ids=str)
+def test_secants_of_averages_grow_no_farther_than_said(average):
+    """Wherever between two points the end lies; and as far as that somewhere, to a point."""
+    x, at = np.arange(-30.0, 1.0), np.arange(5, 30)
+    values = average.powers(x, at, np.linspace(-15.0, -14.0, 100)[1:], np.array([0.5]))[:, ::-1, 0]
+    most = 0
+    for each in values:
+        inside = each[np.flatnonzero(each > 0)]
+        most = max(most, int((inside / np.arange(1.0, len(inside) + 1)).argmax()))
+    assert average.rises - 1 <= most <= average.rises
+
+
 def test_the_end_lies_between_the_last_value_above_zero_and_the_next():
     """Noise that hides everything else leaves that."""
     random = np.random.default_rng(4)

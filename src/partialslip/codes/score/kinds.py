@@ -24,9 +24,12 @@ class Average(NamedTuple):
 
     @property
     def rises(self) -> int:
-        """Points beside the end of a square root over which its averages may rise steeper and steeper, seen from the
-        first zero: one, and those that an average over w spacings takes, whose steepest secant is 1.16 w long."""
-        return 1 + int(1.2 * (self.points - 1 + _INTEGRALS[self.kind]))
+        """Most points beside the end of a square root at which secants from the first zero grow steeper inward.
+
+        One of values at points; those of an average over w spacings grow over at most five quarters of w more.
+        """
+        width = self.points - 1 + _INTEGRALS[self.kind]
+        return 1 + width + width // 4
 
     def begins(self, x: Array, at: int) -> float:
         """Left end, m, of the piece of the contact line that tells in the value at point ``at`` of ``x`` (n,), m."""
