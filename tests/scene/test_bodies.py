@@ -19,8 +19,8 @@ BLOCK = "width=0.04, height=0.02"  # a = 1 mm, R = 50 mm
         ("width=1, height='1'", "height = '1': must be a number, not a string"),
         (
             f"{BLOCK}, colour=1",
-            "colour: unknown key; known are kind, width, height, holder, mesh, unit, body, groups, support, pivot_height, "
-            "pulled, right_grip",
+            "colour: unknown key; known are kind, width, height, holder, mesh, unit, body, groups, support, "
+            "pivot_height, pulled, right_grip",
         ),
         (f"kind='cylinder', {BLOCK}", "kind = 'cylinder': must be one of 'block', 'pad'"),
         (f"support='glued', {BLOCK}", "support = 'glued': must be one of 'clamped', 'roller', 'sides', 'pivot'"),

@@ -89,9 +89,9 @@ class Body(Table, frozen=True, kw_only=True):
                 raise InputError(f"{name}.{key}: {wrong}")
         if self.mesh is not None and self.holder:
             raise InputError(f"{name}.holder: must not be given together with mesh")
-        for key, value in {"unit": self.unit, "body": self.body, "groups": self.groups}.items():
-            if value is not None and self.mesh is None:
-                raise InputError(f"{name}.{key} = {value!r}: must be given only together with mesh")
+        for key in ("unit", "body", "groups"):
+            if (given := getattr(self, key)) is not None and self.mesh is None:
+                raise InputError(f"{name}.{key} = {given!r}: must be given only together with mesh")
         if self.pulled and self.support in ("clamped", "pivot"):
             raise InputError(f"{name}.pulled = true: must have support 'roller' or 'sides', not {self.support!r}")
         if self.right_grip and not (self.pulled and (self.gripped or self.mesh is None)):
