@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 from scipy.interpolate import PchipInterpolator, PPoly
 
+from partialslip.friction.contact_line import ContactLine
 from partialslip.halfplane.shape import Shape
 from partialslip.scene import Friction
 from partialslip.tools.arrays import Array
@@ -13,6 +14,11 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 # accuracy: distance, in widths of the wider cell, within which pairs of cells are integrated in closed form
 _NEAR = 4.0
 _ROWS = 64  # cost: rows of the compliance at once, whose parts fit into the memory of the processor
+
+
+def contact_line(vertices: Array, beta: float = 0.0) -> ContactLine:
+    """The line of the cells between ``vertices`` (c + 1,), for Dundurs' ``beta``."""
+    return ContactLine((vertices[1:] + vertices[:-1]) / 2, np.diff(vertices), vertices, beta)
 
 
 def graded_cells(points: Array, size: float | Array, growth: float) -> Array:

@@ -3,7 +3,6 @@
 Shear is constant on cells, refined towards the ends of the contact and of the computed stick zone.
 """
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -11,14 +10,14 @@ from functools import partial
 import numpy as np
 
 from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure
-from partialslip.friction.active_set import spread
+from partialslip.friction.contact_line import passing
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
 from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
-from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, sticking_zones, within
+from partialslip.friction.zone_ends import apart, finest, sticking_zones
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
 from partialslip.halfplane.stress import SURFACE_REACH, along_surface
@@ -27,6 +26,7 @@ from partialslip.march import driver
 from partialslip.march.cell_stress import CellStresses
 from partialslip.march.cells import (
     compliance,
+    contact_line,
     friction_on,
     graded_cells,
     nearest,
@@ -102,12 +102,9 @@ class SimilarLevel(driver.Level):
         return (self.stick.left, self.stick.right) if self.stick else ()
 
     @property
-    def passing(self) -> list[float]:
-        """Kinks that neither q1 nor q2 has: out of phase these are -f p and f p beside the stick zone, where the kinks
-        of single load points pass by, if the pressure is constant. Kinks in the stick zone last."""
-        if not self.stick or not self.history or self.history.path.in_phase or self.history.path.presses_anew:
-            return []
-        return [kink for kink in self.kinks if not self.stick.left <= kink <= self.stick.right]
+    def passing(self) -> tuple[float, ...]:
+        """Kinks that neither q1 nor q2 has."""
+        return passing(self.kinks, self.stick, self.history)
 
 
 class SimilarBodies(driver.CellProblem[SimilarLevel]):
@@ -222,7 +219,7 @@ def _cells(
     fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
     bends = apart(friction, _SMALLEST, fine.tolist())[len(fine) :]
     gap = nearest(np.array([*fine, *bends]))
-    moving = level.passing if level else []
+    moving = level.passing if level else ()
     lasting = [kink for kink in (level.kinks if level else ()) if kink not in moving]
     known = apart([*inner, *lasting], _INNER * size, fine.tolist())
     passing = apart(moving, _PASSING * size, [*known, *bends])[len(known) + len(bends) :]
@@ -246,53 +243,27 @@ def _solve_level(
     added: Added | None,
     before: Trail | None,
 ) -> SimilarLevel:
-    scene, frame = normal.scene, normal.frame
+    scene, frame, forces = normal.scene, normal.frame, normal.forces(normal.second, vertices)
     if not path:
-        return SimilarLevel(vertices, None, None, normal.forces(normal.second, vertices))
-    x = (vertices[1:] + vertices[:-1]) / 2
+        return SimilarLevel(vertices, None, None, forces)
+    line, places, trail, stepped = contact_line(vertices), frame.places(vertices), None, Errors()
     if start:
-        path = replace(path, before=on_cells(start.q, frame.places(vertices)) / scene.P)
+        path = replace(path, before=on_cells(start.q, places) / scene.P)
     with clock.phase("compliance"):
         normally = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
-        tangential = normally + added(frame.places(vertices)) if added else normally
+        tangential = normally + added(places) if added else normally
     with clock.phase("contact"):
-        f = friction_on(scene.friction, frame.places(vertices))
-        moved = stretched(x * frame.a / scene.length, frame.centre / scene.length)
-
-        def zone(of: History) -> StickInterval:
-            if not of.path.presses_anew:
-                known = of.lasting, of.unsteady, of.stuck
-                return read_stick_zone(x, of.bound, of.change, vertices, lambda values: values, *known)
-            on = np.flatnonzero(of.bound > 0)
-            here, forces = of.of(on), partial(spread, where=on, count=len(x))
-            known = here.lasting, here.unsteady, here.stuck
-            found = read_stick_zone(x[on], here.bound, here.change, vertices, forces, *known)
-            return within(found, normal.common, vertices)
-
-        def errors(of: History, gradual: History) -> dict[str, float]:
-            return of_steps(of, gradual, (zone(of), zone(gradual)), np.diff(vertices), normal.largest.a / frame.a)
-
+        f = friction_on(scene.friction, places)
+        moved = stretched(line.x * frame.a / scene.length, frame.centre / scene.length)
         if path.presses_anew:
-            presses = normal.presses(vertices, normally)
-            trail = Trail(x, before)
-            along = partial(coulomb_varying_pressure.march, x, tangential, moved, f, presses, trail=trail)
+            presses, trail = normal.presses(vertices, normally), Trail(line.x, before)
+            along = partial(coulomb_varying_pressure.march, line.x, tangential, moved, f, presses, trail=trail)
+            errors = partial(of_steps, line, half_width=normal.largest.a / frame.a, common=normal.common)
             history, stepped = follow_or_step(along, path, scene.fem.accuracy, errors if choose else None)
         else:
-            trail = None
             history = coulomb_constant_pressure.march(tangential, moved, normal.forces(frame, vertices), f, path)
-            stepped = {}
-        inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
-        inner.append(history.turning(x))
-        forces = normal.forces(normal.second, vertices)
-        return SimilarLevel(
-            vertices,
-            history,
-            zone(history),
-            forces,
-            tuple(itertools.chain.from_iterable(inner)),
-            stepped,
-            trail=trail,
-        )
+        stick, kinks = line.stick_zone(history, normal.common), tuple(line.kinks(history))
+        return SimilarLevel(vertices, history, stick, forces, kinks, stepped, trail=trail)
 
 
 def _mesh_errors(normal: NormalLoads, level: SimilarLevel, before: SimilarLevel, first: bool) -> dict[str, float]:
