@@ -17,7 +17,7 @@ from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
-from partialslip.friction.zone_ends import apart, finest, sticking_zones
+from partialslip.friction.zone_ends import finest, sticking_zones
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
 from partialslip.halfplane.stress import SURFACE_REACH, along_surface
@@ -25,11 +25,11 @@ from partialslip.halfplane.tractions import CellTractions
 from partialslip.march import driver
 from partialslip.march.cell_stress import CellStresses
 from partialslip.march.cells import (
+    NEAR_ENDS,
+    cells_around,
     compliance,
     contact_line,
     friction_on,
-    graded_cells,
-    nearest,
     norm_parts,
     on_cells,
     relative_change,
@@ -45,14 +45,10 @@ from partialslip.tools.bars import LEAST_SHEAR
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # accuracy: (cell size at the ends, in a; growth)
 _CELLS, _SOMEWHERE = 4.0, 0.5  # accuracy: a zone of fewer cells is unresolved: the error of an end in cells
-_NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
-_SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
-_INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
+_AT_BENDS = 32.0  # cost: most size of cells at kinks of the coefficient of friction, over the size at the ends
 # cost: Excess of errors up to which the next mesh is halfway, which mostly divides them by 4 to 20; the same of q, q1
 # and q2 after the first step, when halfway meshes hardly reduce the estimates of these
 _NEARLY = 3.0, 0.7
-# cost: the same at kinks that neither q1 nor q2 has, and, at most, at kinks of the coefficient of friction
-_PASSING = 32.0
 _WORK = 5e11  # limit: cells^3 times load steps of a mesh
 _LEG = 6.0  # cost: work of a leg that is followed while cells touch and open, over that of a load step (measured)
 _HALVED = 1.7  # accuracy: growth that is less reduced is that of a halfway mesh: 2 times is usual, sqrt(2) halfway
@@ -125,7 +121,10 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         self._friction = self.normal.within(scene.friction.sharp_kinks(self.length))
 
     def cells(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> Array:
-        return _cells(self._ends, self._inner, self._friction, level, *mesh)
+        ends = [*self._ends, *(level.zone if level else ())]
+        moving = level.passing if level else ()
+        kinks = [*self._inner, *(kink for kink in (level.kinks if level else ()) if kink not in moving)]
+        return cells_around(ends, mesh, 1.0, kinks, moving, self._friction, _AT_BENDS)
 
     def too_large(self, level: SimilarLevel, count: int) -> bool:
         history = level.history
@@ -206,33 +205,6 @@ def add_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock:
     return replace(found, surface=surface, stress_at=StressAt(stresses.inside), cost=clock.cost())
 
 
-def _cells(
-    ends: list[float], inner: list[float], friction: list[float], level: SimilarLevel | None, size: float, growth: float
-) -> Array:
-    """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of
-    a larger size at ``inner`` kinks of q and at the kinks on that level, the largest at those that are passing.
-
-    Cells are small compared with the distance of neighbouring ends: q is steep in narrow slip zones and stick zones.
-    Each kink of the coefficient of ``friction`` is an end of a cell, and as many cells as ``growth`` tells lie
-    between two of them: no dip is left out.
-    """
-    fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
-    bends = apart(friction, _SMALLEST, fine.tolist())[len(fine) :]
-    gap = nearest(np.array([*fine, *bends]))
-    moving = level.passing if level else ()
-    lasting = [kink for kink in (level.kinks if level else ()) if kink not in moving]
-    known = apart([*inner, *lasting], _INNER * size, fine.tolist())
-    passing = apart(moving, _PASSING * size, [*known, *bends])[len(known) + len(bends) :]
-    points = np.array([*known, *bends, *passing])
-    sizes = np.full(len(points), _PASSING * size)
-    sizes[: len(known)] = _INNER * size
-    sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap[: len(fine)], 1.0), _SMALLEST)
-    at_bends = slice(len(known), len(known) + len(bends))
-    sizes[at_bends] = np.minimum(sizes[at_bends], growth * gap[len(fine) :])
-    order = np.argsort(points)
-    return graded_cells(points[order], sizes[order], growth)
-
-
 def _solve_level(
     normal: NormalLoads,
     path: Path | None,
@@ -289,8 +261,8 @@ def _mesh_errors(normal: NormalLoads, level: SimilarLevel, before: SimilarLevel,
     growth = level.growth
     soft = max(_CUBIC_OF_SOFT * growth**3, _SQUARE_OF_SOFT * growth**2)
     between = np.maximum(_CUBIC * growth**3, soft / _stiffness(level))
-    between *= np.minimum(_NEAR * gap, 1.0)
-    part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
+    between *= np.minimum(NEAR_ENDS * gap, 1.0)
+    part = _CARRIED if NEAR_ENDS * gaps[1] < 1 else _MOVED
     halfway = not first and before.growth < _HALVED * level.growth
     changed = _CHANGED_HALFWAY if halfway else _CHANGED[not first]
     known = np.maximum(unseen, np.maximum(part[halfway] * moved, between))

@@ -5,6 +5,7 @@ both together (:mod:`partialslip.friction.coulomb_coupled`). Scaled: lengths by 
 by A P.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,18 +22,9 @@ from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import steady_state, steps_of_coupled
 from partialslip.friction.step_errors import Errors, along_path, more_steps, other_steps, pressed_together, summed
 from partialslip.friction.work import told_by_finer
-from partialslip.friction.zone_ends import apart
 from partialslip.halfplane.tractions import CoupledTractions
 from partialslip.march import driver
-from partialslip.march.cells import (
-    contact_line,
-    friction_on,
-    graded_cells,
-    nearest,
-    norm_parts,
-    on_cells,
-    relative_change,
-)
+from partialslip.march.cells import cells_around, contact_line, friction_on, norm_parts, on_cells, relative_change
 from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
@@ -45,9 +37,6 @@ from partialslip.tools.arrays import Array
 from partialslip.tools.bars import BARS, LEAST_SHEAR
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (3e-4, 0.05), (1e-4, 0.025))  # accuracy: (cell size at the ends, in a; growth)
-_INNER = 8.0  # cost: size of cells at kinks over the size at the ends
-_NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
-_SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
 _BEYOND = 1.2  # accuracy: extent of the cells, in that of the contact without coupling ...
 _WIDER = 1.5  # cost: ... and how many times wider they are made where they do not enclose the contact
 _ROUNDING = 1e-12  # accuracy: relative difference of two compliances that is rounding
@@ -198,27 +187,17 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
 
     def cells(self, level: UnlikeLevel | None, mesh: tuple[float, float], wider: float = 1.0) -> Array:
         """Cells that reach ``wider`` than usual beyond the contact."""
-        size, growth = mesh
-        far = _BEYOND * wider * self.width
-        if level is None:
-            fine, inner, a = [-self.width, self.width], list[float](), self.width
-        else:
-            a = max(level.a)
-            fine, inner = apart(level.fine, _SMALLEST * a), [*level.kinks]
-        inner += [(kink - self.scene.origin) / self.scene.length for kink in self.scene.profile.kinks]
-        inner += [0.0] if self.punch and self.gap and self.gap.parabolic else []  # there q/p is x ln|x|
-        L, friction = self.scene.length, self.scene.friction
-        bends = [(kink - self.scene.origin) / L for kink in friction.sharp_kinks(a * L)]
-        bends = apart([bend for bend in bends if abs(bend) < far], _SMALLEST * a, fine)[len(fine) :]
-        gap = nearest(np.array([*fine, *bends])) / a
-        sizes = np.maximum(size * np.minimum(_NEAR * gap[: len(fine)], 1.0), _SMALLEST) * a
-        at_bends = np.minimum(_INNER * size, growth * gap[len(fine) :]) * a
-        others = [kink for kink in apart(inner, _INNER * size * a, fine)[len(fine) :] if abs(kink) < far]
-        points = np.concatenate([fine, bends, others, [-far, far]])
-        wide = growth * (far - self.width)
-        every = np.concatenate([sizes, at_bends, np.full(len(others), _INNER * size * a), [wide, wide]])
-        order = np.argsort(points)
-        return graded_cells(points[order], every[order], growth)
+        scene, far, a = self.scene, _BEYOND * wider * self.width, max(level.a) if level else self.width
+        kinks = [*(level.kinks if level else ()), *self._scaled(scene.profile.kinks)]
+        kinks += [0.0] if self.punch and self.gap and self.gap.parabolic else []  # there q/p is x ln|x|
+        bends = self._scaled(scene.friction.sharp_kinks(a * scene.length))
+        kinks, bends = ([each for each in points if abs(each) < far] for points in (kinks, bends))
+        wide = mesh[1] * (far - self.width)
+        outer = (-far, wide), (far, wide)
+        return cells_around(level.fine if level else [-self.width, self.width], mesh, a, kinks, (), bends, outer=outer)
+
+    def _scaled(self, points: Sequence[float]) -> list[float]:
+        return [(point - self.scene.origin) / self.scene.length for point in points]
 
 
 def _extent(scene: Scene) -> float:
