@@ -1,9 +1,8 @@
 """Solving a problem on one mesh of each body: mesh, condense, contact and friction, zones."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -19,13 +18,13 @@ from partialslip.friction.pressing import Pressed
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.work import told_by_finer
-from partialslip.friction.zone_ends import NEAREST, VERTICES, StickInterval, apart, finest
+from partialslip.friction.zone_ends import NEAREST, VERTICES, apart, finest
 from partialslip.result import Clock
-from partialslip.tools.arrays import Array, Indices
+from partialslip.tools.arrays import Array
 from partialslip.tools.bars import BARS
 from partialslip_fem.bodies import Grading, Kept, Shared, bodies_key, condense, mesh_bodies
 from partialslip_fem.contact import CondensedBody, relative_compliances
-from partialslip_fem.mesh_solution import MeshSolution
+from partialslip_fem.mesh_solution import ContactForces, MeshSolution, Zones
 from partialslip_fem.mortar import nodal_forces, projected
 from partialslip_fem.problem import ScaledProblem
 from partialslip_fem.recovery import contact_line
@@ -128,36 +127,8 @@ def solve_contact(
             moving=problem.contact_moves,
             largest=problem.largest,
             **vars(forces),
-            **zones._asdict(),
+            **vars(zones),
         )
-
-
-@dataclass(frozen=True)
-class _Forces:
-    """Contact forces on the lower contact line; fields as in :class:`MeshSolution`."""
-
-    pressing: Solution
-    most: Array
-    history: History | None
-    nodes: Indices
-    pressed: Pressed | None = None
-    step_errors: Mapping[str, float] = field(default_factory=dict)
-    path_errors: Mapping[str, float] = field(default_factory=dict)
-    path_moves: Array = field(default_factory=lambda: np.zeros((2, 2)))
-    first: Array | None = None
-    trail: Trail | None = None
-
-
-class _Zones(NamedTuple):
-    """Ends of contact and stick zone, and kinks of q; fields as in :class:`MeshSolution`."""
-
-    left: float
-    right: float
-    ends_at_1: tuple[float, float] | tuple[()]
-    fits: Array
-    stick: StickInterval | None
-    kinks: tuple[float, ...]
-    passing: tuple[float, ...]
 
 
 class _Contact:
@@ -172,8 +143,10 @@ class _Contact:
         self.problem, self.C, self.before, self.path = problem, C, before, problem.path
         self.line = contact_line(body, problem.beta)
         self.gap, self.f = projected(body, problem.gap, problem.breaks), problem.f_at(body.x)
-        self.opening = lower.stretch[1]
-        self.moved = np.array([lower.stretch[0], stretched(body.x, problem.origin)[1]])
+        self.stretch = lower.stretch
+        if not self.path:  # tension is part of the path
+            self.gap = self.gap - problem.strains[1][0] * self.stretch[1]
+        self.moved = np.array([self.stretch[0], stretched(body.x, problem.origin)[1]])
         self.arms = body.x if problem.turns else None
         self.pressed: Array | None = None  # normal forces at the beginning of the path
         if self.path and problem.start:
@@ -181,17 +154,15 @@ class _Contact:
             self.path = replace(self.path, before=locked)
         self.together = C.xy is not None or (self.path is not None and self.path.actuator is not None)
 
-    def forces(self, check: bool, shared: Shared) -> _Forces:
+    def forces(self, check: bool, shared: Shared) -> ContactForces:
         """Forces along the load path; ``check`` and ``shared`` as for :func:`solve_contact`."""
         if self.path and self.together:
             return self._of_both_together(self.path, check)
-        if not self.path:  # tension is part of the path
-            self.gap = self.gap - self.problem.strains[1][0] * self.opening
         if self.problem.pressing:
-            return self._under_varying_pressure(check, *self.problem.pressing)
+            return self._under_varying_pressure(self.problem.pressing, check)
         return self._under_constant_pressure(shared)
 
-    def _of_both_together(self, path: Path, check: bool) -> _Forces:
+    def _of_both_together(self, path: Path, check: bool) -> ContactForces:
         problem, line, before = self.problem, self.line, self.before
         growth = coulomb_coupled.Growth(
             problem.similar,
@@ -202,8 +173,7 @@ class _Contact:
         )
 
         def march(path: Path, trail: Trail | None) -> tuple[History, Solution, Pressed | None]:
-            stretch = np.array([self.moved[0], self.opening])
-            loaded = self.C, self.gap, stretch, self.moved[1], self.f, path, line, growth, self.pressed
+            loaded = self.C, self.gap, self.stretch, self.moved[1], self.f, path, line, growth, self.pressed
             pivot = None if problem.pin is None else Pivot(line.x, problem.pin, 0.0)
             return coulomb_coupled.march(*loaded, BARS["q"] * problem.accuracy, trail, pivot)
 
@@ -213,7 +183,7 @@ class _Contact:
         nodes = np.flatnonzero(history.bound > 0)
         own, first = history.of(nodes), history.pressures[0]
         locked = step_errors.pressed_together(own, pressed, line.weights, nodes) if pressed else {}
-        found = _Forces(pressing, most, own, nodes, pressed, locked, first=first, trail=trail)
+        found = ContactForces(nodes, pressing, most, own, first, pressed, locked, trail=trail)
         if check and path.moves:
             finer, *_ = march(step_errors.other_steps(path), None)
             errors = step_errors.along_path(line, history, finer, problem.largest)
@@ -221,13 +191,13 @@ class _Contact:
             found = replace(found, history=known, path_errors=errors, path_moves=moves)
         return found
 
-    def _under_constant_pressure(self, shared: Shared) -> _Forces:
+    def _under_constant_pressure(self, shared: Shared) -> ContactForces:
         line, before = self.line, self.before
         apart = -((line.x < before.left) | (line.x > before.right)).astype(np.int8) if before else None
         pressing = shared.press(self.C.yy, self.gap, self.arms, apart, self.problem.moment)
         nodes, path = np.flatnonzero(pressing.x > 0), self.path
         if not path:
-            return _Forces(pressing, pressing.x, None, nodes)
+            return ContactForces(nodes, pressing, pressing.x)
         if path.before is not None:
             path = replace(path, before=path.before[nodes])
         assert self.C.xx is not None
@@ -235,19 +205,18 @@ class _Contact:
         tangential = shared.tangential(self.C.xx, nodes)
         known = tangential.C, self.moved[:, nodes], pressing.x[nodes], self.f[nodes]
         history = coulomb_constant_pressure.march(*known, path, tangential, slipping, self.problem.order)
-        return _Forces(pressing, pressing.x, history, nodes)
+        return ContactForces(nodes, pressing, pressing.x, history)
 
-    def _under_varying_pressure(self, check: bool, at_1: tuple[float, float], at_2: tuple[float, float]) -> _Forces:
-        """p anew at each step of the load path; ``at_1`` and ``at_2`` are P and M at load points 1 and 2."""
+    def _under_varying_pressure(self, loads: Sequence[tuple[float, float]], check: bool) -> ContactForces:
+        """p anew at each step of the load path, and under the ``loads`` P and M at load points 1 and 2."""
         problem, line, path, history, errors = self.problem, self.line, self.path, None, step_errors.Errors()
         presses = holding = Presses(self.C.yy, self.gap, self.arms)
-        first, second = presses(*at_1), presses(*at_2)
+        first, second = (presses(*each) for each in loads)
         if path:
             assert self.C.xx is not None
             left, right = line.ends((first if problem.largest == 1 else second).x)
-            if not any(
-                part.finite for part in problem.parts
-            ):  # see partialslip.friction.coulomb_varying_pressure.march
+            # see partialslip.friction.coulomb_varying_pressure.march
+            if not any(part.finite for part in problem.parts):
                 holding = Presses(self.C.xx, self.gap, self.arms)
             along = partial(
                 coulomb_varying_pressure.march, line.x, self.C.xx, self.moved, self.f, holding, few=problem.order
@@ -259,26 +228,22 @@ class _Contact:
         most = np.maximum.reduce([each.x for each in done])
         pressing = replace(certified(done), x=second.x, rest=second.rest)
         nodes = np.flatnonzero((first.x > 0) | (second.x > 0))
-        return _Forces(pressing, most, history.of(nodes) if history else None, nodes, None, errors, first=first.x)
+        return ContactForces(nodes, pressing, most, history.of(nodes) if history else None, first.x, step_errors=errors)
 
-    def zones(self, forces: _Forces) -> _Zones:
+    def zones(self, forces: ContactForces) -> Zones:
         """Ends and kinks of the zones under the ``forces``."""
         line, history, nodes = self.line, forces.history, forces.nodes
         q1, q2 = (spread(q, nodes, len(line.x)) for q in (history.q1, history.q2)) if history else (None, None)
         under = [(forces.pressing.x, q2), *([] if forces.first is None else [(forces.first, q1)])]
         many, few = ([line.ends(*each, count=count) for each in under] for count in (VERTICES, NEAREST))
-        (left, right), *at_1 = many
-        stick: StickInterval | None = None
-        kinks: tuple[float, ...] = ()
-        gone: tuple[float, ...] = ()
-        if history:
-            touching, pressed = line.on(nodes), forces.pressed and forces.pressed.on(nodes)
-            stick = touching.stick_zone(history, common_ends(many), pressed)
-            kinks = self._kinks(touching, history, many)
-            gone = () if self.together else passing(kinks, stick, history)
-            kinks = tuple(kink for kink in kinks if kink not in gone)
-        fits = np.abs(np.subtract(many, few)).ravel()
-        return _Zones(left, right, at_1[0] if at_1 else (), fits, stick, kinks, gone)
+        fits, ends_at_1 = np.abs(np.subtract(many, few)).ravel(), many[1] if len(many) > 1 else ()
+        if not history:
+            return Zones(*many[0], ends_at_1, fits, None, (), ())
+        touching, pressed = line.on(nodes), forces.pressed and forces.pressed.on(nodes)
+        stick = touching.stick_zone(history, common_ends(many), pressed)
+        kinks = self._kinks(touching, history, many)
+        gone = () if self.together else passing(kinks, stick, history)
+        return Zones(*many[0], ends_at_1, fits, stick, tuple(kink for kink in kinks if kink not in gone), gone)
 
     def _kinks(self, touching: ContactLine, history: History, ends: Sequence[Ends]) -> tuple[float, ...]:
         """Points between the outermost ``ends`` where slip, or the traction at the start of the path, leaves a kink in

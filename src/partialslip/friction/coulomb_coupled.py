@@ -2,9 +2,9 @@
 (:mod:`partialslip.friction.coupled_step`), scaled as these."""
 
 import itertools
-from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -99,41 +99,49 @@ def press_coupled(
             return Pressed(*_certified(last[1:]), count, errors, grown, f)
 
 
+@dataclass(frozen=True)
 class _Bodies:
-    """Bodies to be pressed together, as for :func:`press_coupled`; ``x`` (n,) are the nodes from where they touch first
-    on."""
+    """Bodies to be pressed together, as for :func:`press_coupled`."""
 
-    def __init__(
-        self,
-        C: Relative,
-        gap: Array,
-        f: Array,
-        line: ContactLine,
-        growth: Growth,
-        P: float,
-        pivot: Pivot | None,
-        trail: Trail | None,
-    ) -> None:
-        self.C, self.gap, self.f, self.line, self.growth = C, gap, f, line, growth
-        self.apart = resting(0 * gap), resting(0 * gap)
-        self._P, self._pivot, self._trail, self._number = P, pivot, trail, itertools.count()
-        even = growth.similar or growth.sized or growth.nearly_similar
-        self.vertex = _vertex(line.x, gap) if even and growth.under.parabolic else 0.0
-        self.x = line.x - self.vertex
+    C: Relative
+    gap: Array
+    f: Array
+    line: ContactLine
+    growth: Growth
+    P: float
+    pivot: Pivot | None
+    trail: Trail | None
+    number: Iterator[int] = field(default_factory=itertools.count)
+
+    @cached_property
+    def vertex(self) -> float:
+        """Where a parabolic gap is smallest: there the bodies touch first."""
+        fit = np.polynomial.Polynomial.fit(self.line.x, self.gap, 2)
+        return float(fit.deriv().roots()[0].real) if self.growth.under.parabolic else 0.0
+
+    @cached_property
+    def x(self) -> Array:
+        """Nodes (n,), from there on."""
+        return self.line.x - self.vertex
+
+    @property
+    def apart(self) -> Pair:
+        """Forces of bodies that are apart."""
+        return resting(0 * self.gap), resting(0 * self.gap)
 
     def step(self, P: float, gap: Array, kept: Array, before: Pair, key: Hashable = None) -> Pair:
         """Forces under ``P`` over the ``gap`` (n,), of nodes that stick at ``kept`` (n,); a guess is ``before``."""
-        C, pivot = self.C, self._pivot and self._pivot._replace(moment=self._pivot.moment * P / self._P)
+        C, pivot = self.C, self.pivot and self.pivot._replace(moment=self.pivot.moment * P / self.P)
         assert C.xx is not None
         assert C.xy is not None
         this = LoadStep(C.xx, C.yy, C.xy, C.opening, self.f, P, gap, 0.0, kept, C.factors, None, pivot)
-        trail, key = (None if key == _ANEW else self._trail), ("pressing", key or next(self._number))
+        trail, key = (None if key == _ANEW else self.trail), ("pressing", key or next(self.number))
         return solve_near(this, [before], trail, key)
 
     def in_steps(self, count: int) -> list[Pair]:
         """Forces after each of ``count`` equal steps."""
         found = [self.apart]
-        for force in np.linspace(0, self._P, count + 1)[1:].tolist():
+        for force in np.linspace(0, self.P, count + 1)[1:].tolist():
             found.append(self.step(force, self.gap, self.kept(found[-1]), found[-1]))
         return found
 
@@ -180,11 +188,6 @@ class _Bodies:
             return punch
         pushes = float(self.f.max()) * abs(line.beta)
         return replace(punch, gap=growth.under.under(*punch.beyond(pushes), pushes))
-
-
-def _vertex(x: Array, gap: Array) -> float:
-    """Where a parabolic ``gap`` (n,) at ``x`` (n,) is smallest: there the bodies touch first."""
-    return float(np.polynomial.Polynomial.fit(x, gap, 2).deriv().roots()[0].real)
 
 
 def _settled(

@@ -12,7 +12,7 @@ import numpy as np
 from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure
 from partialslip.friction.contact_line import passing
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
-from partialslip.friction.load_path import Path, load_path, stretched
+from partialslip.friction.load_path import load_path, stretched
 from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
@@ -140,9 +140,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         first = number == self.coarse
         choose = first or (steps_matter(stepped, self.scene.fem.accuracy) and not self.clock.limited)
         cells = self.cells(level, mesh)
-        found = _solve_level(
-            self.normal, self.path, self.start, cells, self.clock, choose, self.added, level.trail if level else None
-        )
+        found = _solve_level(self, cells, choose, level.trail if level else None)
         if first and found.history:
             self.path = found.history.path
         return replace(found, stepped=found.stepped or stepped, number=number, growth=mesh[1])
@@ -205,25 +203,18 @@ def add_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock:
     return replace(found, surface=surface, stress_at=StressAt(stresses.inside), cost=clock.cost())
 
 
-def _solve_level(
-    normal: NormalLoads,
-    path: Path | None,
-    start: State | None,
-    vertices: Array,
-    clock: Clock,
-    choose: bool,
-    added: Added | None,
-    before: Trail | None,
-) -> SimilarLevel:
+def _solve_level(problem: SimilarBodies, vertices: Array, choose: bool, before: Trail | None) -> SimilarLevel:
+    """Solve on the cells between ``vertices``, and ``choose`` the load steps."""
+    normal, path, clock = problem.normal, problem.path, problem.clock
     scene, frame, forces = normal.scene, normal.frame, normal.forces(normal.second, vertices)
     if not path:
         return SimilarLevel(vertices, None, None, forces)
     line, places, trail, stepped = contact_line(vertices), frame.places(vertices), None, Errors()
-    if start:
-        path = replace(path, before=on_cells(start.q, places) / scene.P)
+    if problem.start:
+        path = replace(path, before=on_cells(problem.start.q, places) / scene.P)
     with clock.phase("compliance"):
         normally = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
-        tangential = normally + added(places) if added else normally
+        tangential = normally + problem.added(places) if problem.added else normally
     with clock.phase("contact"):
         f = friction_on(scene.friction, places)
         moved = stretched(line.x * frame.a / scene.length, frame.centre / scene.length)

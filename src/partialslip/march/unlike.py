@@ -118,7 +118,7 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
             if not more or self.clock.remaining() <= 0:
                 break
             self.path = more
-            level = _solve_on(self, more, level.vertices, max(level.a), self.clock)
+            level = _solve_on(self, more, level.vertices, max(level.a))
         return level
 
     def _enclosed(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
@@ -126,7 +126,7 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
         wider = 1.0
         while True:
             near = max(level.a) if level else None
-            found = _solve_on(self, self.path, self.cells(level, mesh, wider), near, self.clock)
+            found = _solve_on(self, self.path, self.cells(level, mesh, wider), near)
             touching = [found.pressing.x] + ([found.history.bound] if found.history else [])
             if not any(forces[0] or forces[-1] for forces in touching):
                 return found
@@ -207,11 +207,9 @@ def _extent(scene: Scene) -> float:
     return max(abs(end) for end in found) / scene.length
 
 
-def _solve_on(
-    problem: UnlikeBodies, path: Path | None, vertices: Array, near: float | None, clock: Clock
-) -> UnlikeLevel:
+def _solve_on(problem: UnlikeBodies, path: Path | None, vertices: Array, near: float | None) -> UnlikeLevel:
     """Solve on the cells between ``vertices``, for a contact of about the half-width ``near`` if that is known."""
-    scene = problem.scene
+    scene, clock = problem.scene, problem.clock
     line, L = contact_line(vertices, problem.beta), scene.length
     x = line.x
     with clock.phase("compliance"):
@@ -292,7 +290,7 @@ def _path_errors(problem: UnlikeBodies, level: UnlikeLevel) -> tuple[UnlikeLevel
     """The ``level`` with the work that its load steps miss, and their errors on its cells; empty if not known."""
     assert level.history
     path = replace(level.history.path, before=None)
-    finer = _solve_on(problem, other_steps(path), level.vertices, max(level.a), problem.clock)
+    finer = _solve_on(problem, other_steps(path), level.vertices, max(level.a))
     if not finer.history:
         return level, {}
     line = contact_line(level.vertices, problem.beta)
