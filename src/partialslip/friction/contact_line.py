@@ -125,11 +125,14 @@ class ContactLine:
         # on coarse cells the ends may lie outside the contact
         return replace(found, left=max(found.left, both[0]), right=min(found.right, both[1]))
 
-    def kinks(self, history: History, in_turn: bool = False) -> list[float]:
-        """Points where slip leaves a kink in q at a load point: those of the last cycle first, or all ``in_turn``."""
-        way = 1 if in_turn else -1
-        found = [kinks(self.x, bound, q, self.vertices, self.cell_forces) for q, bound in history.visited[::way]]
-        return [*itertools.chain.from_iterable(found), *history.turning(self.x)]
+    def kinks_at(self, q: Array, bound: Array) -> list[float]:
+        """Points where tangential forces ``q`` leave their ``bound`` f p, (n,) each."""
+        return kinks(self.x, bound, q, self.vertices, self.cell_forces)
+
+    def kinks(self, history: History) -> list[float]:
+        """Points where slip leaves a kink in q at a load point, those of the last cycle first."""
+        found = itertools.chain.from_iterable(self.kinks_at(*state) for state in reversed(history.visited))
+        return [*found, *history.turning(self.x)]
 
 
 def common_ends(ends: Sequence[Ends]) -> Ends:

@@ -217,7 +217,6 @@ def _solve_on(problem: UnlikeBodies, path: Path | None, vertices: Array, near: f
     with clock.phase("contact"):
         points = (x[:, None] + line.weights[:, None] / 2 * _NODES) * L + scene.origin
         gap = scene.gap_at(points) @ (_WEIGHTS / 2) / (scene.material.A * scene.P)
-
         if not path:
             pressing = press(C.yy, gap, 1.0)
             return UnlikeLevel(vertices, None, None, pressing, None, (line.ends(pressing.x),) * 2)
@@ -233,15 +232,19 @@ def _solve_on(problem: UnlikeBodies, path: Path | None, vertices: Array, near: f
         stretch, allowed = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
         loaded = C, gap, stretch, moved[1], friction_on(scene.friction, vertices * L + scene.origin), path
         history, pressing, pressed = coulomb_coupled.march(*loaded, line, growth, begins, allowed)
+        history = replace(history, rooms=None)  # room that fades from cycle to cycle counts as room
         at_points = line.ends_at_points(history)
         both = common_ends(at_points)
         stick = line.stick_zone(history, both, pressed)
         if problem.punch and not history.path.moves:  # the punch knows it better than the cells
             reach = problem.punch.stick * (both[1] - both[0]) / 2
             stick = replace(stick, left=-reach, right=reach)
-        on = np.flatnonzero(history.bound > 0)
-        kinks = tuple(kink for kink in line.on(on).kinks(history.of(on), in_turn=True) if both[0] < kink < both[1])
-        return UnlikeLevel(vertices, history, stick, pressing, pressed, at_points, kinks)
+        kinks: list[float] = []
+        for q, bound in history.visited:
+            on = np.flatnonzero(bound > 0)
+            kinks += line.on(on).kinks_at(q[on], bound[on])
+        within = tuple(kink for kink in kinks if both[0] < kink < both[1])
+        return UnlikeLevel(vertices, history, stick, pressing, pressed, at_points, within)
 
 
 def _mesh_errors(level: UnlikeLevel, before: UnlikeLevel, problem: UnlikeBodies) -> Errors:
