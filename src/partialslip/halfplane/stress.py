@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.halfplane.cauchy import Cauchy
+from partialslip.halfplane.change import Change
 from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.traction import half_range
@@ -115,10 +116,11 @@ class Turned:
         return found + under_tension(self.sigma + 0 * at.x, 0.0, at.depth, at.side)
 
 
-def half_of(contact: Contact, change: Loading | Turning | PartOfWay, sigma: float, slope: float) -> Shear | Turned:
+def half_of(contact: Contact, change: Change | PartOfWay, sigma: float, slope: float) -> Shear | Turned:
     """Half of the shear of a ``change`` of a steady cycle, by the tension ``sigma`` and its ``slope``."""
     if isinstance(change, Loading):
         return Shear.of(contact, change, sigma, slope)
+    assert isinstance(change, Turning | PartOfWay)
     return Turned(contact, change.whole if isinstance(change, Turning) else change, 1 / 2, sigma / 2)
 
 

@@ -2,9 +2,10 @@
 tractions by f p0, slip by A f p0 a."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
+from partialslip.halfplane.change import Change
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate_of
 from partialslip.halfplane.gradual_path.from_zero import MOST_LOADS, from_zero
@@ -14,7 +15,6 @@ from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Tractions
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import Worn
 from partialslip.halfplane.steady import UNEVEN_FRICTION
 from partialslip.result import StickZone
@@ -25,65 +25,22 @@ _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a s
 
 
 @dataclass(frozen=True)
-class Turning:
+class Turning(Change):
     """Half a steady cycle in which slip turns round: the change ``once`` of the loads in a single step, which does not
     hold, and the ``way`` of gradual loads, for positive changes."""
 
     once: Loading
     way: HalfCycle
 
-    holds = True
-    one_way = False
-
-    @property
-    def shape(self) -> Shape:
-        """Pressure."""
-        return self.once.shape
-
-    @property
-    def seen(self) -> Shape:
-        """Pressure over the mirrored x, on which both changes of the loads are positive."""
-        return self.once.seen
-
-    @property
-    def turn(self) -> int:
-        """-1 if dQ < 0."""
-        return self.once.turn
-
-    @property
-    def mirror(self) -> int:
-        """-1 if x is mirrored."""
-        return self.once.mirror
-
-    @property
-    def Qf(self) -> float:
-        """Change of the shear force, in 2 f P."""
-        return self.once.Qf
-
-    @property
-    def gf(self) -> float:
-        """Change of the tension along x."""
-        return 0.0
-
-    @property
-    def nothing(self) -> bool:
-        """Whether no load changes."""
-        return False
-
-    @cached_property
-    def zone(self) -> StickZone[float]:
-        """Stick zone of the tractions, \\|dq\\| < 2 p, for positive changes of both loads."""
-        left, right = self.way.last.zone
-        return StickZone((left + right) / 2, (right - left) / 2, self.way.sign)
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Left and right end of the zone of the tractions, for the signs of the loads."""
-        return replace(self.once, zone=self.zone).ends
+    @classmethod
+    def of(cls, once: Loading, way: HalfCycle) -> "Turning":
+        """The loads of ``once``, along the ``way``."""
+        left, right = way.last.zone
+        zone = StickZone((left + right) / 2, (right - left) / 2, way.sign)
+        return cls(once.shape, once.Qf, once.sf, once.turn, once.mirror, once.bound, zone, 0.0, once, way)
 
     @property
     def permanent(self) -> tuple[float, float] | None:
-        """Ends of the zone of points that never slip, for the signs of the loads; None if there are none."""
         return self.whole.stuck
 
     def seen_from(self, interval: tuple[float, float]) -> tuple[float, float]:
@@ -93,7 +50,6 @@ class Turning:
 
     @property
     def breaks(self) -> list[float]:
-        """Places at which the change of traction is not smooth, ascending."""
         return self.whole.breaks
 
     @cached_property
@@ -106,7 +62,6 @@ class Turning:
         return PartOfWay(self, self.way.at(share))
 
     def traction(self, x: Array) -> Array:
-        """Change of shear traction at ``x``, in f p0."""
         return self.whole.traction(x)
 
     @cached_property
@@ -130,7 +85,6 @@ class Turning:
 
     @cached_property
     def worn(self) -> Worn:
-        """Slip over half a cycle, and the energy that a cycle dissipates."""
         return slips(self.way).turned(self.mirror, self.turn)
 
 
@@ -216,7 +170,7 @@ class Followed:
 
 def half_cycle(
     pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, parts: bool = True
-) -> Loading | Turning:
+) -> Change:
     """Half a steady cycle between loads that change by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m), of any
     sign, with |dQ| < 2 f P. Where slip turns round and the gradual way is not known, the single step, which does not
     hold (:attr:`Loading.holds`). Without ``parts`` a slip zone inside the stick zone is not followed, and the way has
@@ -235,7 +189,7 @@ def half_cycle(
         sure = not parts or (not way.parted and pressed.friction_bound.convex)
         holds = sure or certificate_of(way).worst < _HELD
         if holds:
-            return Turning(once, way)
+            return Turning.of(once, way)
     except LostError:
         pass
     if once.parts:
