@@ -5,13 +5,24 @@ import itertools
 import numpy as np
 
 from partialslip.halfplane.gradual_path.inner_rates import A, B, L, R
-from partialslip.halfplane.gradual_path.inner_way import Way
+from partialslip.halfplane.gradual_path.inner_way import SHUT, Way
 from partialslip.halfplane.gradual_path.retreat import Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
 from partialslip.halfplane.gradual_path.tractions import Piece, Tractions
 from partialslip.tools.arrays import Array
 
 _PATIENT = 24  # cost: steps without progress, for ways that are lost with fewer
+
+
+def opens(first: Stage, least: float) -> bool:
+    """Whether a zone inside the stick zone slips as a half cycle begins at the stage ``first``; ``least`` is c*."""
+    last = first.q.parts[-1]
+    return last.smooth is None and first.zone.centre - least - last.low > SHUT
+
+
+def inner_phase(loads: Loads, first: Stage, near: object = None) -> "Parted":
+    """The phase in which a zone inside the stick zone slips, from ``first`` on, perhaps ``near`` a similar phase."""
+    return Parted(loads, first, first.q.parts[-1].low, near if isinstance(near, Parted) else None)
 
 
 def _followed(loads: Loads, first: Stage, low: float, near: Way | None) -> Way:
