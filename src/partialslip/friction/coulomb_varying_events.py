@@ -6,8 +6,6 @@ Scaled as in :mod:`partialslip.friction.history`.
 import itertools
 from dataclasses import replace
 
-import numpy as np
-
 from partialslip.friction.coulomb_legs import Legs
 from partialslip.friction.history import History
 from partialslip.friction.load_path import Missed, Path
@@ -34,10 +32,4 @@ def march(tangential: Array, stretch: Array, f: Array, press: Presses, path: Pat
     pressed = [press.way(begin, end) for begin, end in itertools.pairwise(loads)]
     settling = replace(path, settled=max(path.settled, _REPEATS))
     history = Legs(tangential, stretch, f, pressed, settling, few).followed()
-    steps, bounds = history.around, history.around.bounds
-    room = np.maximum((bounds - steps.forces).min(axis=0) + (bounds + steps.forces).min(axis=0), 0.0)
-    return replace(
-        history,
-        path=replace(path, turns=history.turns, missed=Missed(0.0, 0.0)),
-        room=None if path.in_phase else room,
-    )
+    return replace(history, path=replace(path, turns=history.turns, missed=Missed(0.0, 0.0)))
