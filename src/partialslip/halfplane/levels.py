@@ -13,7 +13,7 @@ from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.shape import places_between
-from partialslip.halfplane.turning import Followed, Reached, Turning
+from partialslip.halfplane.turning import Turned, Turning
 from partialslip.result import PATH_DEPENDENT
 from partialslip.scene import Load
 from partialslip.tools.arrays import Array
@@ -38,7 +38,7 @@ class Levels:
 
     pressed: Contact
     f: float
-    first: Loading | Reached | Followed
+    first: Loading | Turned
     cycle: Change
     known: int
 
@@ -105,14 +105,14 @@ def _where_slip_turns(pressed: Contact, f: float, load: Load, cycle: Turning) ->
     """q1 and q2 where slip turns round: known where every point slips in the steady cycle, and where the loads can be
     followed from zero."""
     if not cycle.permanent:
-        return Levels(pressed, f, Reached(cycle), cycle, 1)
+        return Levels(pressed, f, cycle.reached, cycle, 1)
     lost = f"{PATH_DEPENDENT}on the way, and the first loading decides what is locked in; use march"
     if cycle.way.parted or len(load.points) > 2:
         return lost
     Q, sigma = load.points[-1]
     unit = f * pressed.p0
     try:
-        first = Followed.from_zero(cycle, Q / (unit * pressed.a), sigma / unit, load.cycles)
+        first = cycle.from_zero(Q / (unit * pressed.a), sigma / unit, load.cycles)
         return Levels(pressed, f, first, cycle, 1)
     except LostError:
         return lost
