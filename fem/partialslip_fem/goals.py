@@ -1,8 +1,8 @@
 """What an accuracy requires of the mesh: element sizes at the ends of zones, growth, round faces and corners.
 
-The constants of this module and of :mod:`partialslip_fem.adapt` change the cost of a run. They do not enter its
-error estimates, except ``_FACET_SHARE``, ``_OF_FACETS``, ``_CORNER_ERROR`` and ``_TILTS``, which are added to these.
-Scripts that measure the constants are named where there are any.
+The constants of this module, of :mod:`partialslip_fem.adapt` and of :mod:`partialslip_fem.grading` change the cost of a
+run. They do not enter its error estimates, except ``_FACET_SHARE``, ``_OF_FACETS``, ``_CORNER_ERROR`` and ``_TILTS``,
+which are added to these. Scripts that measure the constants are named where there are any.
 """
 
 import math
@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.result.refining import worst
 from partialslip.tools.arrays import Array
 from partialslip.tools.bars import BARS
 from partialslip_fem import estimate
@@ -87,6 +88,30 @@ class OutlineErrors(NamedTuple):
         return cls(facet_error, corner_error, errors)
 
 
+class NextMesh(NamedTuple):
+    """Element size at the ends in contact half-widths, ``growth`` away from them, and by which factor the elements at
+    the ends are ``finer`` than on the mesh before."""
+
+    size: float
+    growth: float
+    finer: float
+
+
+class MeshPlan(NamedTuple):
+    """What the next ``mesh`` is made of: elements of ``order``, whose size at the ends is on the way to ``enough``;
+    ``outline``: what becomes of round faces and corners."""
+
+    mesh: NextMesh
+    order: int
+    enough: float
+    outline: OutlineErrors
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the elements at the ends are as small as is enough."""
+        return size_reached(self.mesh.size, self.enough)
+
+
 @dataclass(frozen=True)
 class Goal:
     """What one ``accuracy`` requires of the mesh and of the estimated errors.
@@ -127,14 +152,19 @@ class Goal:
         size = min(size, estimate.stick_element_size(solution, gaps(solution, problem), self.end_error))
         return min(max(size, FINEST), COARSEST / 2)
 
-
-class NextMesh(NamedTuple):
-    """Element size at the ends in contact half-widths, ``growth`` away from them, and by which factor the elements at
-    the ends are ``finer`` than on the mesh before."""
-
-    size: float
-    growth: float
-    finer: float
+    def plan(self, before: MeshPlan, solution: MeshSolution, problem: ScaledProblem, least: float) -> MeshPlan:
+        """The mesh after that of ``before`` and its ``solution``; with elements of the same size where the contact line
+        cut the contact. ``least`` as for :func:`course`."""
+        order, (size, _, finer), enough = problem.order, before.mesh, self.element_size(solution, problem)
+        ahead = course(size, finer, enough, least, order)
+        if len(ahead) > 1 and order > ON_THE_WAY:
+            order = ON_THE_WAY
+            ahead = course(size, finer, enough, growth_at(self.accuracy, order), order)
+        if not solution.enclosed:
+            return before._replace(order=order, enough=enough)
+        arrives = size_reached(ahead[0].size, enough)
+        outline = OutlineErrors.at(self.accuracy, problem, None if arrives else ahead[0])
+        return MeshPlan(ahead[0], order, enough, outline)
 
 
 def swept_size(accuracy: float) -> float:
@@ -243,11 +273,6 @@ def gaps(solution: MeshSolution, problem: ScaledProblem) -> Array:
         across[2:4] = apart[2, 3]
         apart[2, 3] = apart[3, 2] = np.inf
     return np.maximum(np.array([across, apart.min(axis=1)]) / solution.half_width, _NO_GAP)
-
-
-def worst(errors: Mapping[str, float]) -> float:
-    """The largest of ``errors``, each divided by its bar relative to the bar of an end; 0 if there are none."""
-    return max((error / BARS[key] for key, error in errors.items()), default=0.0)
 
 
 def _far_apart(solution: MeshSolution) -> tuple[Array, Array, Array, Array]:
