@@ -13,10 +13,10 @@ from partialslip_fem import estimate, goals, solving
 from partialslip_fem.bodies import Kept
 from partialslip_fem.first_mesh import FIRST_SIZE, contact_line_limit, solve_on_first_mesh, too_narrow, widened
 from partialslip_fem.goals import Goal, MeshPlan, NextMesh
-from partialslip_fem.grading import graded
+from partialslip_fem.grading import EndErrors, graded
 from partialslip_fem.load_steps import LoadSteps
-from partialslip_fem.mesh_errors import AllErrors, EndErrors
 from partialslip_fem.mesh_solution import Adapted, MeshSolution
+from partialslip_fem.plates import compliance_error
 from partialslip_fem.problem import ScaledProblem
 
 _CALMER = (0.4, 0.85)  # cost: smallest and largest factor of the growth after a mesh whose error is too large
@@ -69,30 +69,26 @@ def adapt(
         If the contact does not fit on a finite body, or wider and wider contact lines do not enclose it.
     """
     refinement = _Refinement(problem, accuracy, width, clock, keep)
-    return refinement.adapted(refine(refinement, progress))
+    found = refine(refinement, progress)
+    settled = max(problem.accuracy, found.error / goals.BAR) if clock.limited else None
+    meshes, factored, iterations = refinement.work
+    return replace(found, meshes=meshes, factorizations=factored, iterations=iterations, settled=settled)
 
 
-@dataclass(frozen=True)
-class _OnMesh:
-    """The ``solution`` on a mesh with blocks of half-width ``block_width``, or ``width`` in contact half-widths, and
-    whether this is ``eased``; its errors due to the elements at the ``ends`` and, where those away from the ends are
-    estimated, ``all`` of them. ``calmer``: factor of the growth of the next mesh."""
+@dataclass(frozen=True, kw_only=True)
+class _OnMesh(Adapted):
+    """The solution on a mesh with blocks of half-width ``block_width``, and whether this is ``eased``; its errors due
+    to the elements at the ``ends``, besides all errors, which are empty where those away from the ends are not
+    estimated. ``calmer``: factor of the growth of the next mesh."""
 
-    solution: MeshSolution
-    width: float
     block_width: float
     eased: bool
     ends: EndErrors
-    all: AllErrors | None = None
     calmer: float = 1.0
 
     @property
     def unknowns(self) -> str:
         return f"{self.solution.dofs:,} unknowns"
-
-    @property
-    def errors(self) -> dict[str, float]:
-        return self.all.errors if self.all else {}
 
     @property
     def error(self) -> float:
@@ -138,8 +134,9 @@ class _Refinement(Refinable[_OnMesh]):
             self.goal = Goal.at(max(self.goal.accuracy, worst(solution.step_errors)), problem)
         if not solution.enclosed and max(-solution.reach[0], solution.reach[1]) >= contact_line_limit(problem):
             raise too_narrow(problem)
-        ends = EndErrors.of(solution, problem, plan, grading, a)
-        return self._estimated_in_time(_OnMesh(solution, width, width * a, grading.eased is not None, ends))
+        ends, eased = EndErrors.of(solution, problem, plan, grading, a), grading.eased is not None
+        found = _OnMesh(solution, {}, *self.work, width, block_width=width * a, eased=eased, ends=ends)
+        return self._estimated_in_time(found)
 
     def finished(self, found: _OnMesh) -> bool:
         """Whether ``found`` is accurate enough, or a finer mesh would not improve it; never where the contact line cuts
@@ -161,24 +158,24 @@ class _Refinement(Refinable[_OnMesh]):
 
     def estimated(self, found: _OnMesh) -> _OnMesh:
         """Solve once more with elements of the neighbouring order, for the errors away from the ends."""
-        if found.all:
+        if found.errors:
             return found
         solution = found.solution
         problem = replace(self.steps.problem, order=solution.lower.order)
         other = estimate.neighbour(solution, problem, found.block_width, self.clock)
         self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
-        errors = AllErrors.of(solution, other, found.ends, problem, found.eased)
+        corner = goals.corner(solution, problem)
+        smooth = estimate.smooth_errors(solution, other, found.eased, problem.breaks, corner)
+        errors = estimate.combined(solution, smooth, found.ends.errors)
+        plates = compliance_error(problem, solution, other, errors["a"])
         times, power = _WANDERING if solution.wanders else (3, 0.5 / self.steps.problem.order)
-        calmer = float(np.clip((times * errors.smooth / self._bar(solution)) ** -power, *_CALMER))
-        return replace(found, all=errors, calmer=calmer)
+        calmer = float(np.clip((times * worst(smooth) / self._bar(solution)) ** -power, *_CALMER))
+        return replace(found, errors=errors, plates_error=plates, other=other.history, calmer=calmer)
 
-    def adapted(self, found: _OnMesh) -> Adapted:
-        """What is handed over of the best mesh, and the work on all meshes."""
-        assert found.all
-        settled = max(self.steps.problem.accuracy, found.error / goals.BAR) if self.clock.limited else None
-        iterations = self.iterations + self.steps.iterations
-        work = self.meshes, self.factored, iterations
-        return Adapted(found.solution, found.errors, *work, found.width, settled, found.all.plates, found.all.other)
+    @property
+    def work(self) -> tuple[int, int, int]:
+        """Meshes, factorisations and linear solves up to now."""
+        return self.meshes, self.factored, self.iterations + self.steps.iterations
 
     def _bar(self, solution: MeshSolution) -> float:
         """Largest error of the mesh that is accepted; the load steps have their share, but for those of coupled bodies,

@@ -154,17 +154,16 @@ class Goal:
 
     def plan(self, before: MeshPlan, solution: MeshSolution, problem: ScaledProblem, least: float) -> MeshPlan:
         """The mesh after that of ``before`` and its ``solution``; with elements of the same size where the contact line
-        cut the contact. ``least`` as for :func:`course`."""
+        cut the contact. ``least`` as for :func:`next_mesh`."""
         order, (size, _, finer), enough = problem.order, before.mesh, self.element_size(solution, problem)
-        ahead = course(size, finer, enough, least, order)
-        if len(ahead) > 1 and order > ON_THE_WAY:
+        mesh = next_mesh(size, finer, enough, least, order)
+        if order > ON_THE_WAY and not size_reached(mesh.size, enough):
             order = ON_THE_WAY
-            ahead = course(size, finer, enough, growth_at(self.accuracy, order), order)
+            mesh = next_mesh(size, finer, enough, growth_at(self.accuracy, order), order)
         if not solution.enclosed:
             return before._replace(order=order, enough=enough)
-        arrives = size_reached(ahead[0].size, enough)
-        outline = OutlineErrors.at(self.accuracy, problem, None if arrives else ahead[0])
-        return MeshPlan(ahead[0], order, enough, outline)
+        on_the_way = None if size_reached(mesh.size, enough) else mesh
+        return MeshPlan(mesh, order, enough, OutlineErrors.at(self.accuracy, problem, on_the_way))
 
 
 def swept_size(accuracy: float) -> float:
@@ -200,29 +199,25 @@ def size_reached(size: float, goal: float) -> bool:
     return size <= _REACHED * goal
 
 
-def course(size: float, finer: float, goal: float, least: float, order: int) -> list[NextMesh]:
-    """The meshes from element ``size`` at the ends to ``goal``.
+def next_mesh(size: float, finer: float, goal: float, least: float, order: int) -> NextMesh:
+    """The next mesh on the way from element ``size`` at the ends to ``goal``.
 
     Parameters
     ----------
     size, goal : float
         In contact half-widths.
     finer : float
-        Refinement of the next mesh, if ``size`` has reached ``goal``; otherwise equal steps of at most ``FINER``.
+        Refinement, if ``size`` has reached ``goal``; otherwise equal steps of at most ``FINER``.
     least : float
-        Growth of the last mesh; the growth of the meshes before follows from the element size of the next one.
+        Growth of the last mesh; that of meshes before follows from the element size of the next one.
     order : int
         Polynomial order of the elements.
     """
     if not size_reached(size, goal):
         finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, FINER)))
-    meshes = []
-    while True:
-        size = max(size / finer, FINEST)
-        growth = least if size_reached(size, goal) else max(least, growth_for(_KNOWN * size / finer, order))
-        meshes.append(NextMesh(size, growth, finer))
-        if size <= max(_REACHED * goal, FINEST):
-            return meshes
+    size = max(size / finer, FINEST)
+    growth = least if size_reached(size, goal) else max(least, growth_for(_KNOWN * size / finer, order))
+    return NextMesh(size, growth, finer)
 
 
 def growth_for(error: float, order: int) -> float:
