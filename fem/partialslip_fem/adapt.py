@@ -29,6 +29,8 @@ _WAITS = 2  # cost: meshes in a row without an estimate of the error away from t
 _MOST_UNKNOWNS = 200_000  # limit: on a mesh from which no finer one is made
 _MOST_CUTS = 16  # limit: meshes whose contact line cuts the contact; the next line is a tenth of a wider on both sides
 _WITH_ESTIMATE = 2  # cost: seconds of a mesh and of the second solution of its error estimate, in those of the mesh
+# accuracy: The order below costs least, but P2 and P1 lock towards nu = 0.5, so that their differences are no errors.
+_NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3, 6: 5}
 
 
 def adapt(
@@ -162,7 +164,7 @@ class _Refinement(Refinable[_OnMesh]):
             return found
         solution = found.solution
         problem = replace(self.steps.problem, order=solution.lower.order)
-        other = estimate.neighbour(solution, problem, found.block_width, self.clock)
+        other = neighbour(solution, problem, found.block_width, self.clock)
         self.factored, self.iterations = self.factored + other.factored, self.iterations + other.iterations
         corner = goals.corner(solution, problem)
         smooth = estimate.smooth_errors(solution, other, found.eased, problem.breaks, corner)
@@ -215,3 +217,17 @@ class _Refinement(Refinable[_OnMesh]):
             return found
         self.waited = 0
         return self.estimated(found)
+
+
+def neighbour(solution: MeshSolution, problem: ScaledProblem, width: float, clock: Clock) -> MeshSolution:
+    """Solve ``problem`` on the meshes of ``solution`` with elements of the neighbouring order.
+
+    ``width`` and ``clock`` as for :func:`partialslip_fem.solving.solve_on_meshes`.
+    """
+    return solving.solve_on_meshes(
+        [body.mesh for body in solution.bodies],
+        replace(problem, order=_NEIGHBOUR[problem.order]),
+        width,
+        clock,
+        before=solution,
+    )

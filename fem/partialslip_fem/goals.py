@@ -1,8 +1,9 @@
 """What an accuracy requires of the mesh: element sizes at the ends of zones, growth, round faces and corners.
 
 The constants of this module, of :mod:`partialslip_fem.adapt` and of :mod:`partialslip_fem.grading` change the cost of a
-run. They do not enter its error estimates, except ``_FACET_SHARE``, ``_OF_FACETS``, ``_CORNER_ERROR`` and ``_TILTS``,
-which are added to these. Scripts that measure the constants are named where there are any.
+run. They do not enter its error estimates, except ``_NEIGHBOUR`` there, and ``_FACET_SHARE``, ``_OF_FACETS``,
+``_CORNER_ERROR`` and ``_TILTS``, which are added to these. Scripts that measure the constants are named where there are
+any.
 """
 
 import math
