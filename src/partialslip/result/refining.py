@@ -16,6 +16,32 @@ def worst(errors: Mapping[str, float]) -> float:
     return max((error / BARS[key] for key, error in errors.items()), default=0.0)
 
 
+class Pace:
+    """CPU seconds of meshes one after the other, and whether the next one fits the allowance of a ``clock``.
+
+    The next mesh is taken to grow as the last two did.
+    """
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock, self._left = clock, clock.remaining()
+        self._took: list[float] = []
+
+    def took(self) -> None:
+        """Attribute the seconds since the last call to one mesh."""
+        if self._clock.limited:
+            left = self._clock.remaining()
+            self._took.append(self._left - left)
+            self._left = left
+
+    def fits(self, times: float = 1.0) -> bool:
+        """Return whether ``times`` the seconds of the next mesh are left; true without an allowance."""
+        if not self._clock.limited:
+            return True
+        before, last = [self._took[-1], *self._took][-2:]
+        growth = max(last / before, 1.0) if before > 0 else 1.0
+        return times * growth * last <= self._left
+
+
 class OnMesh(Protocol):
     """A solution on one mesh."""
 
@@ -46,7 +72,7 @@ class Refinable(ABC, Generic[S]):
         """Whether ``found`` is accurate enough, or a finer mesh is of no use."""
 
     @abstractmethod
-    def fits(self, pace: "Pace", found: S) -> bool:
+    def fits(self, pace: Pace, found: S) -> bool:
         """Whether the mesh after that of ``found`` fits the allowance, at the ``pace`` of those before."""
 
     def valid(self, found: S) -> bool:  # noqa: ARG002
@@ -60,32 +86,6 @@ class Refinable(ABC, Generic[S]):
     def estimated(self, found: S) -> S:
         """``found`` with its errors, whatever they cost."""
         return found
-
-
-class Pace:
-    """CPU seconds of meshes one after the other, and whether the next one fits the allowance of a ``clock``.
-
-    The next mesh is taken to grow as the last two did.
-    """
-
-    def __init__(self, clock: Clock) -> None:
-        self._clock, self._left = clock, clock.remaining()
-        self._took: list[float] = []
-
-    def took(self) -> None:
-        """Attribute the seconds since the last call to one mesh."""
-        if self._clock.limited:
-            left = self._clock.remaining()
-            self._took.append(self._left - left)
-            self._left = left
-
-    def fits(self, times: float = 1.0) -> bool:
-        """Return whether ``times`` the seconds of the next mesh are left; true without an allowance."""
-        if not self._clock.limited:
-            return True
-        before, last = [self._took[-1], *self._took][-2:]
-        growth = max(last / before, 1.0) if before > 0 else 1.0
-        return times * growth * last <= self._left
 
 
 def refine(problem: Refinable[S], progress: Callable[[str], None]) -> S:
