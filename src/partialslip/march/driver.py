@@ -21,7 +21,7 @@ from partialslip.friction.work import work, work_error
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march.cells import off_cells, on_cells
 from partialslip.result import Clock, Pace, Result, Slip, SteadyState, Traction
-from partialslip.result.refining import Refinable, refine
+from partialslip.result.refining import OnMesh, Refinable, refine
 from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip.tools.arrays import Array, Indices
@@ -88,7 +88,7 @@ class LastLevel:
 
 
 @dataclass(frozen=True)
-class Refined(Generic[L]):
+class Refined(OnMesh, Generic[L]):
     """A ``level`` and the one ``before`` it, the ``place`` of its mesh among those of the problem, and its errors:
     ``meshed`` are those due to the cells, ``stepped`` those due to the load steps."""
 
