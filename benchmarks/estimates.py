@@ -34,7 +34,7 @@ from partialslip.halfplane.gradual_path.half_cycle import steady
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.steady import steady_stick_zone, transition
 from partialslip.run.judge import compare
-from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import norm_errors
 from partialslip.scene.gradual import turns_round
 from partialslip.scene.reading import parse_scene
 from partialslip.tools.arrays import Array

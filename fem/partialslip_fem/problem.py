@@ -399,7 +399,9 @@ def _finite(plain: Part, body: Body | None, scene: Scene, L: float) -> Part:
     if body.mesh is not None:
         needed = {*itertools.chain(*_held(body.support, False))} | ({"right"} if body.pulled else set())
         field = f"bodies.{part.name}.mesh"
-        return replace(part, mesh=read(field, body.mesh, (body.unit or 1.0) / L, face, sorted(needed)))
+        unit = (body.unit or 1.0) / L
+        groups = body.groups.given if body.groups else {}
+        return replace(part, mesh=read(field, body.mesh, unit, face, sorted(needed), body.body, groups))
     return replace(
         part,
         extent=((body.width or 0.0) / 2 / L, (body.height or 0.0) / L),

@@ -10,7 +10,7 @@ from refusing import line_of
 
 from partialslip import InputError, load_result, load_rig
 from partialslip.study.batch.ledger import Ledger, _sealed
-from partialslip.study.cost.ladder import read_peers
+from partialslip.study.cost import read_peers
 from partialslip.tools.strictjson import decoded, parsed
 from partialslip.verify.benchmark import read_problems, read_submission
 from partialslip.verify.verdicts import was_finished

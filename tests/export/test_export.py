@@ -14,7 +14,7 @@ from partialslip import load_scene
 from partialslip.cli import main
 from partialslip.codes.export import FORMATS, export
 from partialslip.codes.export import model as models
-from partialslip.codes.export.calculix import deck_units
+from partialslip.codes.export.inp import deck_units
 from partialslip.codes.export.model import modelled
 from partialslip.scene.units import N_MM, N_UM, SI
 from partialslip.tools.errors import InputError

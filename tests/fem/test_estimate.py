@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.run.judge.means import cell_means
+from partialslip.run.judge.measures import cell_means
 from partialslip.scene.reading import parse_scene
 from partialslip_fem import adapt, estimate, goals, solving
 from partialslip_fem.solving import solve_on_meshes

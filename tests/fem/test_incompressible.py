@@ -10,7 +10,7 @@ import scipy.linalg as la
 import partialslip
 from partialslip.result import Clock, Traction, TractionAt
 from partialslip.run.judge import cell_errors
-from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import norm_errors
 from partialslip_fem import bodies, grading
 from partialslip_fem.bodies import Grading
 from partialslip_fem.problem import scaled

@@ -12,7 +12,7 @@ from partialslip.halfplane import contact, one_step_zone
 from partialslip.march import similar as marching
 from partialslip.tools.allowance import Allowance
 from partialslip.tools.bars import BARS
-from partialslip.verify.hard_cases.scenes import hard_scene
+from partialslip.verify.hard_cases import hard_scene
 
 MEAN = ["load.Q=[31415.926535897932, 219911.48575128554]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0
 ROUGH = "fem.accuracy=1e-3"

@@ -14,7 +14,7 @@ from partialslip.march import punch_growth, unlike
 from partialslip.march.punch_growth import PunchGrowth, goodman_stick_zone, relative
 from partialslip.march.unlike import dundurs
 from partialslip.result import Clock
-from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import norm_errors
 from partialslip.scene.plan import plan
 
 STEEL = ("material.upper.E=210e9", "material.upper.nu=0.3", "load.cycles=2")
@@ -82,7 +82,7 @@ def moved_on(pressed_by=0.6):
     coarse = of_last.solve(None, (1e-2, 0.2))
     after = of_last.solve(coarse, (1e-3, 0.05))
     cells = after.vertices * last.length
-    before = unlike._solve_on(of_first, of_first.path, cells / first.length, None, Clock())
+    before = unlike._solve_on(of_first, of_first.path, cells / first.length, None)
     moved = []
     for scene, level in ((first, before), (last, after)):
         forces = (level.pressed.normal.x, level.pressed.tangential.x)

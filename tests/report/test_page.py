@@ -20,7 +20,7 @@ from partialslip.report.page import Section, run_page, study_page
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import compared
 from partialslip.scene.plan import plan
-from partialslip.study.cost import ladder
+from partialslip.study import cost
 from partialslip.tools.errors import MissingLibraryError
 from partialslip.tools.origin import made_now, origin_lines
 from partialslip.tools.output.svg import svg, with_dark_mode
@@ -48,9 +48,23 @@ def test_the_origin_is_on_the_page(page):
     assert lines.keys() == {"date", "command", "overrides", "version", "commit", "machine"}
     assert MADE.date[:10] in lines["date"]
     assert partialslip.__version__ in lines["version"]
-    text = page[: page.index("<h2>")].replace("&#39;", "'")
+    text = page[page.index("<h2>How it was run</h2>") :].replace("&#39;", "'")
     for line in lines.values():
         assert line in text
+
+
+def test_what_was_asked_is_told_before_how_it_was_run(page):
+    """After the answer; after the errors of another code, where these are scored."""
+    study = study_page("study of it", SCENE, MADE, [Section("Answer", ["yes"]), Section("Details", ["many"])])
+    run = compared(SCENE, plan(SCENE), {"exact": EXACT, "mine.csv": replace(result(a=1.1), method="mine.csv")}, 1e-3)
+    told = {
+        page: ["exact: small tension", "Scene", "Tractions", "Errors of fem", "Methods and costs", "How it was run"],
+        run_page(run, MADE): ["Errors of mine.csv", "Scene", "exact: small tension", "Tractions", "How it was run"],
+        study: ["Answer", "Scene", "Details", "How it was run"],
+    }
+    for each, titles in told.items():
+        found = re.findall("<h2>(.*?)</h2>", each)
+        assert [title for title in found if title in titles] == titles
 
 
 def test_several_origins_share_rows():
@@ -166,13 +180,13 @@ def test_a_narrow_figure_of_a_study_stays_narrow():
 def test_a_study_of_cost_writes_its_page(tmp_path, monkeypatch):
     def point(series, error, cpu_s, **counts):
         errors = dict.fromkeys("amnpq", error)
-        return ladder.CostPoint(
+        return cost.CostPoint(
             series, f"{error:g}", errors, cpu_s, cpu_s + 1, 0.1, cpu_s, 100.0, {"mesh": cpu_s}, counts
         )
 
     found = [point("exact", 1e-15, 0.1)]
     found += [point("P4, adapted", 10.0**-k, float(k), dofs=1000 * k) for k in (2, 3, 4)]
-    monkeypatch.setattr(ladder, "measure_costs", lambda *_: ladder.MeasuredCosts(found, []))
+    monkeypatch.setattr(cost, "measure_costs", lambda *_: cost.MeasuredCosts(found, []))
     assert main(["study", "cost", "hertz-shear", "--set", "friction.f=0.4", "--out", str(tmp_path)]) == 0
     page = (tmp_path / "report.html").read_text("utf-8")
     assert page.count("<svg") == 3  # costs, phases, sketch

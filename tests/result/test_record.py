@@ -106,7 +106,7 @@ def test_the_schema_that_is_published_is_that_of_the_types():
     [
         (b"", "must be a results.json"),
         (b"[]", "must be a results.json"),
-        (b"{}", f"schema '': must be '{SCHEMA}'"),
+        (b"{}", f"schema = '': must be '{SCHEMA}'"),
         (b'{"schema": "partialslip/result/2"}', "run the scene again"),
         (b'{"schema": 3}', "must be a results.json"),
         (f'{{"schema": "{SCHEMA}"}}'.encode(), ": missing"),

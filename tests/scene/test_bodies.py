@@ -19,8 +19,8 @@ BLOCK = "width=0.04, height=0.02"  # a = 1 mm, R = 50 mm
         ("width=1, height='1'", "height = '1': must be a number, not a string"),
         (
             f"{BLOCK}, colour=1",
-            "colour: unknown key; known are kind, width, height, holder, mesh, unit, support, pivot_height, pulled, "
-            "right_grip",
+            "colour: unknown key; known are kind, width, height, holder, mesh, unit, body, groups, support, "
+            "pivot_height, pulled, right_grip",
         ),
         (f"kind='cylinder', {BLOCK}", "kind = 'cylinder': must be one of 'block', 'pad'"),
         (f"support='glued', {BLOCK}", "support = 'glued': must be one of 'clamped', 'roller', 'sides', 'pivot'"),
@@ -32,6 +32,8 @@ BLOCK = "width=0.04, height=0.02"  # a = 1 mm, R = 50 mm
         (f"holder={{width=1, height=1e-5}}, {BLOCK}", "holder.height = 1e-05: must be 0.0001 to 10000 times the width"),
         ("width=1, height=1e5", "height = 100000.0: must be 0.0001 to 10000 times the width, 1"),
         (f"unit=1e-3, {BLOCK}", "unit = 0.001: must be given only together with mesh"),
+        (f"body='PAD', {BLOCK}", "body = 'PAD': must be given only together with mesh"),
+        ("mesh='a.msh', groups={kontakt=1}", "groups.kontakt: unknown key; did you mean 'contact'?"),
         ("mesh=''", "mesh = '': must be a name"),
         ("mesh=3", "mesh = 3: must be a string, not a whole number"),
         ("mesh='a.msh', width=1", "width: must not be given together with mesh"),

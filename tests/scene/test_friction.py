@@ -9,8 +9,8 @@ from refusing import line_of
 import partialslip
 from partialslip.scene import Friction
 from partialslip.scene.plan import plan
-from partialslip.scene.writing import scene_toml
-from partialslip.study.live.page import live_page
+from partialslip.scene.reading import scene_toml
+from partialslip.study.live import live_page
 from partialslip.study.map import stick_map
 from partialslip.tools.errors import InputError
 

@@ -7,8 +7,7 @@ from refusing import line_of
 
 import partialslip
 from partialslip.scene import Elastic, Material
-from partialslip.scene.reading import parse_scene
-from partialslip.scene.writing import scene_tables
+from partialslip.scene.reading import parse_scene, scene_tables
 from partialslip.tools.errors import InputError
 
 STEEL, BRASS = {"E": 210e9, "nu": 0.3}, {"E": 100e9, "nu": 0.35}

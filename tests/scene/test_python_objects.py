@@ -23,7 +23,7 @@ from partialslip.scene import (
     Scene,
     Tabulated,
 )
-from partialslip.scene.writing import scene_toml
+from partialslip.scene.reading import scene_toml
 
 SHIPPED = partialslip.load_scene("fretting-aluminium")
 

@@ -10,11 +10,11 @@ from outline import texts
 import partialslip
 from partialslip.cli import main
 from partialslip.cli.cost import _answer, _left_out, _progress
+from partialslip.study import cost
 from partialslip.study.batch.job import Job, ProcessCost, solve_apart
 from partialslip.study.batch.job import _known as known
 from partialslip.study.batch.ledger import Ledger
-from partialslip.study.cost import ladder as cost
-from partialslip.study.cost.figure import errors_svg, phases_svg
+from partialslip.study.cost import errors_svg, phases_svg
 
 SCENE = partialslip.load_scene("hertz-large-tension")
 

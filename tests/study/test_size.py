@@ -8,8 +8,8 @@ import subprocess
 import sys
 import threading
 import time
-import xml.etree.ElementTree
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import made
@@ -29,7 +29,8 @@ from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import Sized, compared_methods, solve_sized
 from partialslip.study.size.figure import grid_svg, size_svg
-from partialslip.study.size.law import Kind, PointStatus, trend
+from partialslip.study.size.law import Kind, PointStatus, levels, trend
+from partialslip.tools.errors import InputError
 
 
 def test_the_error_of_marched_half_planes_is_part_of_that_of_a_difference():
@@ -228,16 +229,46 @@ def test_the_command_prints_and_writes_what_was_found(tmp_path, monkeypatch, cap
     solved = entries(key, {at: 40 * at**-2.0 for at in (4.0, 8.0, 16.0, 32.0, 64.0, 128.0)})
     monkeypatch.setattr(size, "measure", lambda *_, **__: solved)
     command = ["study", "size", "hertz-shear", "--over", f"{key}=4,8,16,32,64,128", "--processes", "1"]
-    assert main([*command, "--out", str(tmp_path / "solved")]) == 0
+    assert main([*command, "--verbose", "--out", str(tmp_path / "solved")]) == 0
     printed = capsys.readouterr().out
-    for text in ("63.2, interpolated", "200 (197 to 203), extrapolated", "3.9e-02 f", "6.2e-01 s"):
+    assert printed.startswith("hertz-shear, half-planes: a within 1 % from 63.2 m on")
+    for text in ("63.2, interpolated", "200 (197 to 203), extrapolated", " * 3.9e-02", "   6.2e-01"):
         assert text in printed
+    assert main([*command, "--level", "2%", "--out", str(tmp_path / "solved")]) == 0
+    assert "3.9e-02" not in (printed := capsys.readouterr().out)
+    assert printed.startswith("hertz-shear, half-planes: a within 2 % from 44.7 m on")
     files = ["cases.csv", "laws.csv", "points.csv", "size.svg"]
     assert sorted(path.name for path in (tmp_path / "solved").glob("*.[cs]*v*")) == files
     monkeypatch.setattr(size, "measure", lambda *_, **__: entries(key, {}, [4.0]))
     assert main([*command, "--out", str(tmp_path / "failed")]) == 1
     assert "not solved: bodies.lower.height 4.0, accuracy 1.0: too narrow" in capsys.readouterr().out
     assert not (tmp_path / "failed" / "size.svg").exists()
+
+
+@pytest.mark.parametrize("text", ["2", "0", "-1%", "100%", "m=", "two", "nan"])
+def test_levels_that_are_no_shares_are_refused(text):
+    with pytest.raises(InputError, match=f"--level {text}: must be a share > 0 and < 1"):
+        levels([text])
+
+
+def test_levels_are_of_all_quantities_or_of_one():
+    found = levels(["2%", "m=0.5%", "m=0.001"])
+    assert found == {"": (0.02,), "m": (0.005, 0.001)}
+    made = replace(made_sizes(1.28 * X**-2.0), levels=found)
+    assert [needed.level for needed in trend(made, "m").needed] == [0.005, 0.001]
+    (needed,) = trend(made, "n").needed
+    assert (needed.level, needed.size) == (0.02, pytest.approx(8))
+
+
+def test_ctrl_c_says_what_is_kept(tmp_path, monkeypatch, capsys):
+    def stopped(_, __, ledger, *___, **____):
+        ledger.add("first", entries("bodies.lower.height", {4.0: 1.0}, remains=None)[0])
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(size, "measure", stopped)
+    command = ["study", "size", "hertz-shear", "--over", "bodies.lower.height=4,8", "--processes", "1"]
+    assert main([*command, "--out", str(tmp_path)]) == 130
+    assert capsys.readouterr().err == "partialslip: interrupted: 1 case kept; the same command goes on\n"
 
 
 def test_the_same_mesh_twice_gives_no_error_of_the_mesh():
@@ -262,8 +293,8 @@ def test_table_csv_and_figure_mark_the_same_points():
     study = tables.size_study(scene(), axis, found)
     headings, rows = tables.differences_table(study, study.models[0])
     assert headings == ("size", "a", "p_max", "mesh")
-    marks = {row[0]: row[1][-1] for row in rows}
-    assert marks == {"2": "-", "4": "f", "8": "f", "16": "f", "32": "e", "64": "e", "128": "e", "1.28e+04": "v"}
+    fitted = {row[0]: row[1].startswith("*") for row in rows}
+    assert fitted == dict.fromkeys(("4", "8", "16"), True) | dict.fromkeys(("2", "32", "64", "128", "infinite"), False)
     points = list(csv.DictReader(tables.points_csv(study).splitlines()))
     assert [row["point"] for row in points if row["quantity"] == "a"] == [
         *["fitted"] * 3, *[PointStatus.UNCLEAR] * 3, PointStatus.LIMIT,
@@ -276,21 +307,13 @@ def test_table_csv_and_figure_mark_the_same_points():
     assert all(f"size {unit}" in table[0] for table in (points, laws))
     assert tables.laws_table(study)[1][0][-1] == "4, 8, 16"
     assert [row[0] for row in tables.needed_table(study)[1]] == ["a", "p_max"]
-    assert "not solved: bodies.*.width 2.0, accuracy 1.0: too narrow" in tables.size_notes(study)
-    assert "f: fitted" in tables.size_notes(study)
+    assert "not solved: bodies.*.width 2.0, accuracy 1.0: too narrow" in study.remarks
 
-    drawn = xml.etree.ElementTree.fromstring(size_svg(study))
     texts = [text.strip() for text in texts_of(size_svg(study))]
-    assert {"2", "4", "8", "16", "32", "64", "128", "not solved"} <= set(texts)
-    assert {"half-plane, fitted", "half-plane, not fitted"} <= set(texts)
+    assert {"2", "4", "8", "16", "32", "64", "128", "not solved", "half-planes"} <= set(texts)
+    assert {"10 %", "0.001 %"} <= set(texts)  # both ends of the axis
+    assert "a within 1 %: half-planes\xa05.48\xa0a" in texts
     assert not any("equivalent" in text for text in texts)
-    panel = next(group for group in drawn.iter() if group.get("id") == "axes_1")
-    fills = [
-        [mark.get("style", "") for mark in group.iter("{http://www.w3.org/2000/svg}use")]
-        for group in panel if (group.get("id") or "").startswith("line2d")
-    ]  # fmt: skip
-    circles = [group for group in fills if len(group) == 3]
-    assert [("fill: #ffffff" in group[0]) for group in circles] == [True, False]  # open: not fitted; filled: fitted
 
 
 def test_both_half_planes_have_their_laws():
@@ -304,13 +327,13 @@ def test_both_half_planes_have_their_laws():
     assert [trend.quantity for trend in alike.trends] == ["a"]
     assert (plain.trends[0].law.k, alike.trends[0].law.k) == pytest.approx((2, 4))
     rows = {row[0]: row[1] for row in tables.differences_table(study, alike)[1]}
-    solved = {"8": "2.0e-01 f", "16": "1.2e-02 f", "32": "7.6e-04 f", "64": "4.8e-05 e", "6400": "0.0e+00 v"}
+    solved = {"8": "* 2.0e-01", "16": "* 1.2e-02", "32": "* 7.6e-04", "64": "4.8e-05", "infinite": "0.0e+00"}
     assert rows == {"2": "-", "4": "-", **solved}
     assert [row[:2] for row in tables.laws_table(study)[1]] == [("a", "half-plane"), ("a", "equivalent")]
     needed = {row[:2]: row[2] for row in tables.needed_table(study)[1]}
     assert needed["a", "equivalent"] == "16.8, interpolated"
     assert needed["a", "half-plane"] == "54.8, interpolated"
-    assert "no equivalent half-planes at 2 and 4: must be larger" in tables.size_notes(study)
+    assert "no equivalent half-planes at 2 and 4: must be larger" in study.remarks
     points = list(csv.DictReader(tables.points_csv(study).splitlines()))
     assert [float(row["difference"]) for row in points if row["half-planes"] == "equivalent"] == pytest.approx(
         [*(800 * at**-4.0 for at in (8.0, 16.0, 32.0, 64.0)), 0.0]
@@ -326,7 +349,7 @@ def test_both_half_planes_have_their_laws():
     assert all(len(row) == len(head) for row in rows)
 
     texts = [text.strip() for text in texts_of(size_svg(study))]
-    assert {"half-plane, fitted", "equivalent, fitted", "equivalent, not fitted"} <= set(texts)
+    assert {"half-planes", "equivalent half-planes", "54.8", "16.8"} <= set(texts)
 
 
 def test_the_error_of_the_rig_is_an_error_of_the_mesh():

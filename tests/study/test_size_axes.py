@@ -64,6 +64,17 @@ def test_a_key_that_is_not_in_the_scene_is_told_the_nearest(key, told):
     assert line_of(make, scene(), [read(f"{key}=1,2")]) == f"--over {key}: {told}"
 
 
+def test_a_thickness_is_twice_the_height_of_a_body_on_rollers():
+    halved = scene().replace({"bodies.lower.support": "roller"})
+    axis, plain = read("bodies.lower.thickness=2,6"), read("bodies.lower.height=1,3")
+    assert [case.scene for case in make(halved, [axis])] == [case.scene for case in make(halved, [plain])]
+    assert (axis.limit, axis.label(halved.units)) == (2 * plain.limit, "bodies.lower.thickness in m")
+    assert axis.stays(halved) == plain.stays(halved)
+    assert (plain.halves(halved), axis.halves(halved), plain.halves(scene())) == (["bodies.lower"], [], [])
+    with pytest.raises(partialslip.InputError, match=r"bodies.upper.support = 'clamped': use bodies.upper.height"):
+        make(halved, [read("bodies.*.thickness=2,6")])
+
+
 def test_displacements_of_the_plates_are_refused_before_anything_is_solved(monkeypatch):
     monkeypatch.setattr("partialslip.study.size.axes.run", None)
     moved = scene().replace(load={"Q": [0, 0], "displacement": [-1e-5, 2e-5]})

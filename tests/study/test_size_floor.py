@@ -57,12 +57,12 @@ def test_a_size_that_is_solved_below_a_level_which_more_remains_than_is_no_answe
 def test_the_answer_says_from_which_size_on():
     """Interpolated, never, bounded from either side."""
     found = trend(made_sizes(FLOOR + 0.3 * X**-1.5, 1e-6, remains=FLOOR, error=1e-6), "m")
-    assert tables._from_size(found.needed[0]) == f"from {found.needed[0].size:.4g} on"
-    assert tables._from_size(found.needed[1]) == "never (0.55 % remains)"
+    assert tables._from_size(found.needed[0]) == f" from {found.needed[0].short} on"
+    assert tables._from_size(found.needed[1]) == ": never (0.55 % remains)"
     unknown = trend(made_sizes(16 * X**-2.0, 0.0, remains=None), "m")
-    assert tables._from_size(unknown.needed[2]) == "not up to 128"
+    assert tables._from_size(unknown.needed[2], "mm") == ": not up to 128 mm"
     small = trend(made_sizes(1e-5 * X**-2.0, 0.0, remains=None), "m")
-    assert tables._from_size(small.needed[0]) == f"from {X.min():.4g} on at the latest"
+    assert tables._from_size(small.needed[0]) == f" from {X.min():.4g} on at the latest"
 
 
 def test_a_difference_that_grows_with_the_size_has_no_rest_that_remains():
@@ -116,7 +116,7 @@ def test_a_pad_that_stays_leaves_a_part_however_large_the_specimen_is(tmp_path):
     assert m.needed[1].kind is Kind.NEVER
     assert not any(each.kind is Kind.EXTRAPOLATED for trend in study.models[0].trends for each in trend.needed)
     stays = "bodies.upper.width, bodies.upper.height, bodies.lower.width and the slopes of the profile stay"
-    assert f"infinite size: solved at 2000; {stays}" in tables.size_notes(study)
+    assert f"infinite size: solved at 2000; {stays}" in study.remarks
 
 
 def test_a_size_that_a_scene_cannot_have_is_told_and_fails_nothing(tmp_path, monkeypatch):

@@ -16,7 +16,7 @@ from partialslip.study.size.axes import axis as read
 from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import Sized, solve_sized
 from partialslip.study.size.figure import size_svg
-from partialslip.study.size.stresses import criteria_of
+from partialslip.study.size.stresses import criteria_of, quantities_of
 from partialslip.tools.errors import InputError
 
 
@@ -54,7 +54,7 @@ def test_stresses_have_laws_and_needed_sizes_like_all_quantities():
     assert stresses.stresses_of(study).quantities == ("sigma_xx", "swt", "swt.line")
     head, rows = stresses.stress_differences_table(study, study.models[0])
     assert head == ("size", "stresses", "sigma_xx", "swt", "mesh")
-    assert [row[:4] for row in rows[:2]] == [("4", "surface", "1.2e-01 s", "0.0e+00 e"), ("4", "line", "", "1.2e-01 s")]
+    assert [row[:4] for row in rows[:2]] == [("4", "surface", "1.2e-01", "0.0e+00"), ("4", "line", "", "1.2e-01")]
     head, rows = stresses.largest_table(study)
     assert head == ("largest", "unit", "size", "fem", "x, mm", "half-plane", "x, mm")
     assert rows[0] == ("sigma_xx", "MPa", "4", "100.0000 +- 0.0001", "1", "87.5", "1")
@@ -65,7 +65,7 @@ def test_stresses_have_laws_and_needed_sizes_like_all_quantities():
         "sigma_xx",
         "Pa",
     ]
-    assert "sigma_xx, largest" in size_svg(stresses.stresses_of(study))
+    assert "sigma_xx within 1 %" in size_svg(stresses.stresses_of(study))
     assert size.stress_quantities(found) == ("sigma_xx", "swt", "swt.line")
     assert size.along(axis, found).mesh["sigma_xx"] == pytest.approx(1e-6)
 
@@ -136,6 +136,15 @@ def test_criteria_are_those_that_the_scene_or_the_user_asks_for():
     spots = dict.fromkeys(("sigma_xx", "principal", "principal.line", "swt", "swt.line"))
     (shown,) = size.with_criteria([Sized(labels={}, stresses={"fem": spots})], ["swt"])
     assert [*shown.stresses["fem"]] == ["sigma_xx", "swt", "swt.line"]
+
+
+def test_the_answer_is_of_the_quantities_asked_for():
+    asking = scene().replace({"fatigue.distance": 1e-4})
+    assert quantities_of(asking, None, ["swt"], asked=False) == ["m", "n", "sigma_xx"]
+    assert quantities_of(asking, None, ["swt"], asked=True) == ["m", "n", "sigma_xx", "swt"]
+    assert quantities_of(asking, ["p", "swt.line"], ["swt"], asked=False) == ["p", "swt.line"]
+    with pytest.raises(InputError, match=r"--show sigma_xx: must be of a, .*, q; no stresses"):
+        quantities_of(scene(), ["sigma_xx"], ["swt"], asked=False)
 
 
 @pytest.mark.parametrize(

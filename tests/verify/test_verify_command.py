@@ -21,7 +21,7 @@ from partialslip.cli import main
 from partialslip.cli import verify as command
 from partialslip.march import similar as marching
 from partialslip.run import run
-from partialslip.run.judge import Bar, Outcome, verdict
+from partialslip.run.judge import Bar, Outcome, verdicts
 from partialslip.scene.reading import load_scene
 from partialslip.study.batch import ledger
 from partialslip.study.batch.ledger import Ledger
@@ -57,7 +57,7 @@ def test_one_case_by_name(tmp_path, capsys):
 
 
 def test_a_missed_bar_is_exit_1(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(verdict, "CERTIFICATE_BAR", 1e-300)
+    monkeypatch.setattr(verdicts, "CERTIFICATE_BAR", 1e-300)
     code, record = verify(tmp_path, *STRESS, "--only", "1")
     assert code == 1
     assert [one["quantity"] for one in record["cases"]["stress-5-1"] if one["outcome"] == "missed"] == ["certificate"]

@@ -138,7 +138,7 @@ def add_verbose(parser: argparse.ArgumentParser, what: str) -> None:
 
 # Options that do not change the results.
 _NEUTRAL = {"command", "scene", "overrides", "own_process", "line", "default"}
-_NEUTRAL |= {"out", "force", "json", "pdf", "verbose", "save", "processes", "cluster", "shown"}
+_NEUTRAL |= {"out", "force", "json", "pdf", "verbose", "save", "processes", "cluster", "shown", "quantities", "levels"}
 
 
 def methods_of(text: str, known: Collection[str]) -> list[str]:

@@ -12,8 +12,8 @@
     Loads that change gradually, event by event; ``tableau`` holds its rates.
 ``step_errors``, ``steps``
     What load steps leave, and whether they suffice.
-``zone_ends``, ``regime``
-    Ends of contact and stick zone between nodes; the name of the regime.
+``contact_line``, ``zone_ends``, ``regime``
+    What is read from forces on the line: ends of contact and stick zone between nodes, kinks; the name of the regime.
 ``partition``, ``warm_start``, ``restart``
     Factors and solutions that are used again.
 """

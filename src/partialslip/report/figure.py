@@ -1,5 +1,6 @@
 """The traction plot: exact line, finite-element markers, stick zone shaded; x/a against q/(f p0); and the errors."""
 
+import math
 from collections.abc import Mapping
 from itertools import cycle
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.run.methods import METHODS
 from partialslip.scene import Friction, Scene, Tabulated
-from partialslip.scene.points import read_points
+from partialslip.scene.measured import read_points
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 from partialslip.tools.output.svg import svg
@@ -193,6 +194,9 @@ def draw_errors(axes: "Axes", run: Run) -> None:
 
     what = "difference" if shown_half_planes(run) else "error"
     axes.set(yscale="log", xlabel="x/a", ylabel=f"{what}, in p0 and f p0", xlim=_limits(shown))
+    axes.set_ylim(
+        *(10.0 ** way(math.log10(end)) for way, end in zip((math.floor, math.ceil), axes.get_ylim(), strict=True))
+    )
     # few ticks and plain text: small ticks and formulas take longer to lay out than all lines together
     axes.yaxis.set_major_locator(LogLocator(numticks=6))
     axes.yaxis.set_major_formatter("{x:.0e}")

@@ -10,13 +10,14 @@ from partialslip.report.answer import HALF_PLANES, NOT_ESTIMATED, dissipated, sc
 from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.run.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
-from partialslip.run.judge.known import error_of
+from partialslip.run.judge.reference import error_of
+from partialslip.run.methods import METHODS
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.plan import Plan
 from partialslip.scene.plausible import implausible as implausible
+from partialslip.scene.reading import scene_tables
 from partialslip.scene.units import SI, Dimension, Units
-from partialslip.scene.writing import scene_tables
 from partialslip.tools.groups import grouped
 
 HEADINGS = ("quantity", "unit", "reference", "value", "error", "estimate", "bar", "")
@@ -58,6 +59,11 @@ def beside_half_planes(run: Run, name: str) -> bool:
 def shown_half_planes(run: Run) -> bool:
     """Return whether any method of ``run`` stands :func:`beside_half_planes`."""
     return any(beside_half_planes(run, name) for name in run.comparisons)
+
+
+def scored(run: Run) -> bool:
+    """Return whether ``run`` compares results of another code."""
+    return any(result.method not in METHODS for result in run.results.values())
 
 
 def whose(run: Run, name: str) -> str:

@@ -17,9 +17,8 @@ from partialslip.result.rig import Rig, key_of, load_rig
 from partialslip.result.state import State
 from partialslip.result.traction import sliding
 from partialslip.run.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
-from partialslip.run.judge.known import estimated
-from partialslip.run.judge.outcome import missed_by
-from partialslip.run.judge.reference import ALL_EFFECTS, reference, reference_among
+from partialslip.run.judge.reference import ALL_EFFECTS, estimated, reference, reference_among
+from partialslip.run.judge.verdicts import missed_by
 from partialslip.run.methods import METHODS, Means, Progress
 from partialslip.scene import Effects, Scene
 from partialslip.scene.plan import Plan, plan, reduced

@@ -19,7 +19,7 @@ from partialslip.run import compared
 from partialslip.run.judge import Conclusion, Outcome
 from partialslip.run.methods import REFERENCES
 from partialslip.scene.plan import plan
-from partialslip.scene.writing import scene_toml
+from partialslip.scene.reading import scene_toml
 from partialslip.study.batch.ledger import Ledger, case_key, scene_content
 from partialslip.study.batch.sweep import SweepProgress, Task, work_through, workers
 from partialslip.tools.errors import InputError

@@ -15,15 +15,15 @@ from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.plan import asks_for_stresses
-from partialslip.scene.reading import meant, parse_scene
+from partialslip.scene.reading import meant, parse_scene, scene_tables
 from partialslip.scene.units import Dimension, Units
-from partialslip.scene.writing import scene_tables
 from partialslip.study.batch.job import Job
 from partialslip.study.size.case import compared_methods, half_plane_method
 from partialslip.study.size.law import BEYOND, CLEAR
 from partialslip.tools.errors import InputError
 
 ACCURACY = "accuracy"  # label of a case besides the axes
+_THICKNESS = ".thickness"  # end of the key for twice the height of a body on rollers: of all of a specimen
 _COUNT = 9  # display: values of a range without a number of them
 _KEY = re.compile(r"(?:([0-9.]+(?:[eE][-+]?[0-9]+)?)\*)?([^*0-9].*|\*\..*)")
 _NUMBER = re.compile(r"([0-9.]+(?:[eE][-+]?[0-9]+)?)(a?)")
@@ -52,6 +52,12 @@ class Axis:
         return " = ".join(key for key, times in self.keys.items() if times == 1) or " = ".join(self.keys)
 
     @property
+    def settings(self) -> dict[str, float]:
+        """Keys as scenes have them, with factors: a thickness is twice the height."""
+        halves = {key: key.removesuffix(_THICKNESS) + ".height" for key in self.keys if key.endswith(_THICKNESS)}
+        return {halves.get(key, key): times / (2 if key in halves else 1) for key, times in self.keys.items()}
+
+    @property
     def limit(self) -> float:
         """Value that stands for an infinite size: what falls with 1/size is CLEAR times smaller there than at the
         farthest size that a law is trusted for. Infinite for an axis of other settings than sizes of bodies."""
@@ -62,7 +68,7 @@ class Axis:
         """Return the keys of the lengths of the bodies of ``scene`` that the axis does not set."""
 
         def is_set(path: list[str]) -> bool:
-            keys = [key.split(".") for key in self.keys]
+            keys = [key.split(".") for key in self.settings]
             return any(len(key) == len(path) and all(map(fnmatchcase, path, key)) for key in keys)
 
         tables, found = scene_tables(scene), []
@@ -75,6 +81,19 @@ class Axis:
                 found.append(known)
         return found
 
+    def check_thickness(self, scene: Scene) -> None:
+        """Refuse a thickness of bodies that do not stand on rollers, in the middle plane of a specimen."""
+        for name, body in scene.bodies:
+            key = next((key for key in self.keys if fnmatchcase(name + _THICKNESS, key)), "")
+            if key.endswith(_THICKNESS) and body.support != "roller":
+                why = "only a body on rollers is half of a specimen"
+                raise InputError(f"--over {key}: {why}; {name}.support = {body.support!r}: use {name}.height")
+
+    def halves(self, scene: Scene) -> list[str]:
+        """Return the names of bodies of ``scene`` on rollers whose height, half of a thickness, the axis sets."""
+        found = [name for name, body in scene.bodies if body.support == "roller"]
+        return [name for name in found if any(fnmatchcase(f"{name}.height", key) for key in self.keys)]
+
     @property
     def beyond(self) -> "Axis":
         """The axis at its :attr:`limit` alone."""
@@ -86,13 +105,18 @@ class Axis:
             return f"{self.name} in contact half-widths"
         return self.name if self._dimension == "1" else f"{self.name} in {units.label(self._dimension)}"
 
+    def unit(self, units: Units) -> str:
+        """Unit of the values; empty for a number."""
+        return "a" if self.in_a else units.label(self._dimension)
+
     def heading(self, units: Units, name: str) -> str:
         """Heading ``name`` of a column of values in a CSV file, with their unit in brackets unless SI."""
         return f"{name} [a of the half-plane]" if self.in_a else units.heading(name, self._dimension)
 
     @property
     def _dimension(self) -> Dimension:
-        found = {of for known, of in DIMENSIONS.items() if any(fnmatchcase(known, key) for key in self.keys)} - {"1"}
+        set_by = self.settings
+        found = {of for known, of in DIMENSIONS.items() if any(fnmatchcase(known, key) for key in set_by)} - {"1"}
         return found.pop() if len(found) == 1 else "1"
 
 
@@ -101,7 +125,7 @@ def axis(text: str) -> Axis:
 
     Values are a list ``4a,8a,16a`` or a range in equal ratios: ``4a..256a`` of 9 values, ``4a..256a:13`` of 13. The
     unit ``a`` is the half-plane's contact half-width. ``*`` in a key stands for any one table; ``3*KEY`` is set to
-    three times the value.
+    three times the value. ``bodies.lower.thickness`` is twice the height of a body on rollers.
 
     Raises
     ------
@@ -166,13 +190,15 @@ def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0
         shown = ", ".join(scene.units.plain(each, "m") for each in scene.load.displacement)
         why = "must be left out of a study of sizes, as half-planes have no plates; give load.Q"
         raise InputError(f"load.displacement = [{shown}]: {why}")
+    for each in axes:
+        each.check_thickness(scene)
     a = _half_width(scene) if any(each.in_a for each in axes) else 1.0
     plain = scene_tables(scene)
     found = []
     for values in itertools.product(*(each.values for each in axes)):
         data = deepcopy(plain)
         for each, value in zip(axes, values, strict=True):
-            for key, times in each.keys.items():
+            for key, times in each.settings.items():
                 _put(data, key.split("."), value * times * (a if each.in_a else 1), key)
         labels = {each.name: value for each, value in zip(axes, values, strict=True)}
         for accuracy in accuracies:

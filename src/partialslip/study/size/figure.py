@@ -8,110 +8,130 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from partialslip.study.size.case import EQUIVALENT, HALF_PLANE
-from partialslip.study.size.law import LEVELS, Kind, Needed, PointStatus, Sizes, Trend
-from partialslip.study.size.tables import SizeStudy, size_heading
+from partialslip.study.size.law import Kind, Needed, Sizes, Trend
+from partialslip.study.size.tables import NAMES, SizeStudy, percent, size_text
 from partialslip.tools.arrays import Array
 from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.axis import XAxis, YAxis
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
+CAPTION = "How far half-planes are off, over the size; marks and numbers: from there on within the level."
 _LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # display: contours of the change
-_NAMES = {
-    "a": "a", "p_max": "p_max, largest p", "p": "p, relative L2", "m": "m, in a", "n": "n, in a", "q": "q, relative L2",
-    "sigma_xx": "sigma_xx, largest",
-}  # fmt: skip
-_COLUMNS = 2  # display: panels side by side: few, to be read on a phone
+_WIDTH, _HIGH = 4.2, 1.8  # display: of the figure and of a panel, inches: read at a width of 9 cm
 _FARTHEST = 10.0  # display: times the largest size: what is shown of extrapolated sizes
-_LETTER = 0.036  # display: width of a letter of a label, as a fraction of the axis
+_BELOW = 1e-3  # display: of the largest level: smallest difference that is shown, but for smaller levels
+_MARGIN = 1.3  # display: factor beyond the ends of the axis of differences
+_LINE = 56  # display: characters of a title
+_LABEL = 48  # display: characters of a label of the axis
+_LETTER = 0.03  # display: width of a letter of a label, as a fraction of the axis
 _LETTER_WIDE, _LINE_HIGH = 0.018, 0.05  # display: the same on a map, and the height of a label
-_LINE = 66  # display: characters of the heading
+_OF_A = ("m", "n")  # quantities whose differences are in a
 
 
 def size_svg(study: SizeStudy) -> str:
     """Return the differences of ``study`` over the size as SVG, a panel for each quantity; one size at least is solved.
 
-    Circles are the half-plane's, squares those of equivalent half-planes. Fitted points are filled, others open. Lines
-    show the laws, errors of the mesh are grey, and marks on the levels the sizes from which on the difference is below.
-    Horizontal lines show what remains at an infinite size.
+    Circles are the half-plane's, squares those of equivalent half-planes. Horizontal lines are the levels; where a
+    level is kept from a size on, a line falls from there to the axis, beside the number.
     """
-    found = [quantity for quantity in study.quantities if any(trend.quantity == quantity for trend in study.trends)]
-    count = -(-len(found) // _COLUMNS)
-    title = textwrap.fill(size_heading(study), _LINE)
+    trends = study.trends
+    found = [quantity for quantity in study.quantities if any(trend.quantity == quantity for trend in trends)]
+    levels = sorted({needed.level for trend in trends for needed in trend.needed})
+    low, high = _decades(study, levels)
 
     def draw(figure: "Figure") -> None:
-        panels = figure.subplots(count, _COLUMNS, sharex=True, sharey=True, squeeze=False)
-        for axes in panels.flat[len(found) :]:
-            axes.set_axis_off()
-        _put_sizes(panels.flat[0], study)
-        for number, quantity in enumerate(found):
-            axes = panels.flat[number]
-            _draw_quantity(axes, study, quantity)
-            axes.tick_params(axis="x", labelsize=8, labelbottom=number + _COLUMNS >= len(found))
-            if number + _COLUMNS >= len(found):
-                axes.set_xlabel("size")
-        for axes in panels[:, 0]:
-            axes.set_ylabel("difference")
-        panels.flat[0].set_ylim(bottom=_lowest(study) / 3)  # laws may fall far below
-        figure.suptitle(title, x=0.01, ha="left", fontsize=10)
-        figure.legend(handles=_keys(study), loc="outside lower left", ncols=2, frameon=False, fontsize=8)
+        panels = figure.subplots(len(found), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        _put_sizes(panels[0], study)
+        panels[0].set_ylim(low / _MARGIN, high * _MARGIN)
+        decades = [10.0**k for k in range(round(math.log10(low)), round(math.log10(high)) + 1)]
+        panels[0].set_yticks(decades, [percent(each) for each in decades], minor=False)
+        panels[0].yaxis.minorticks_off()
+        for axes, quantity in zip(panels, found, strict=True):
+            _draw_quantity(axes, study, quantity, low)
+            axes.tick_params(labelsize=9, labelbottom=True)
+            axes.spines["left"].set_bounds(low, high)
+            axes.spines["bottom"].set_bounds(*axes.get_xticks()[[0, -1]])
+        panels[-1].set_xlabel(textwrap.fill(study.label, _LABEL), fontsize=9)
+        figure.legend(handles=_keys(study, low), loc="outside lower left", ncols=2, frameon=False, fontsize=8.5)
 
-    lines = 0.15 * count * (len(study.models) - 1)  # of the titles of the panels
-    return svg(draw, (5.6, 1.7 + 2.3 * count + lines + 0.15 * title.count("\n")))
+    return svg(draw, (_WIDTH, _HIGH * len(found) + 1.1))
 
 
-def _draw_quantity(axes: "Axes", study: SizeStudy, quantity: str) -> None:
-    """Draw points, laws and needed sizes of one quantity."""
-    title, across = [_NAMES.get(quantity, quantity)], axes.get_yaxis_transform()
-    for model in study.models:
-        for trend in (each for each in model.trends if each.quantity == quantity):
-            _draw_trend(axes, study, model, trend)
-            if law := trend.law:
-                spread, sign = (law.bounds[1] - law.bounds[0]) / 2, "-" if law.floor.value < 0 else "+"
-                remains = f"{law.floor} {sign} " if law.floor.clear else ""
-                title.append(f"{model.name}: {remains}{law.C:.2g} size$^{{-{law.k:.2f}}}$ (± {spread:.1g})")
+def _decades(study: SizeStudy, levels: Sequence[float]) -> tuple[float, float]:
+    """Return the powers of ten between which differences are shown."""
+    off = np.concatenate([found for model in study.models for found in model.off.values()])
+    off = off[off > 0]
+    low = min(max(off.min(initial=levels[0]), _BELOW * levels[-1]), levels[0])
+    high = max(off.max(initial=levels[-1]), levels[-1])
+    return 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high))
+
+
+def _draw_quantity(axes: "Axes", study: SizeStudy, quantity: str, bottom: float) -> None:
+    """Draw differences, levels and needed sizes of one quantity."""
+    unit = study.axis.unit(study.scene.units)
     plain = study.models[0]
     mesh, shown = plain.mesh[quantity], plain.size < plain.limit
-    axes.plot(plain.size[shown], np.where(mesh > 0, mesh, np.nan)[shown], ".-", color="0.6", ms=3, lw=0.6, zorder=1)
+    known = shown & (mesh > bottom)
+    axes.fill_between(plain.size[known], bottom, mesh[known], **_MESH)
     for failed in _failed(study):
         axes.axvline(failed, **_FAILED, zorder=0)
-    for level in LEVELS:
-        axes.axhline(level, color="0.8", lw=0.6, zorder=0)
-        axes.text(1.01, level, f"{100 * level:g} %", transform=across, fontsize=8, va="center")
-    axes.set_title("\n".join(title), loc="left", fontsize=8.5)
+    trends = [(model, trend) for model in study.models for trend in model.trends if trend.quantity == quantity]
+    for model, trend in trends:
+        _draw_trend(axes, study, model, trend, bottom)
+    needed = trends[0][1].needed
+    for each in needed:
+        axes.axhline(each.level, **_LEVEL, zorder=0)
+        if not math.log10(each.level).is_integer():  # else it has a tick
+            axes.annotate(percent(each.level), (1, each.level), (2, 0), xycoords=axes.get_yaxis_transform(),
+                          textcoords="offset points", fontsize=8.5, va="center")  # fmt: skip
+    found = (f"{_SHORT[model.name]} {_with_unit(trend.needed[0].short, unit)}" for model, trend in trends)
+    told = ", ".join(text.replace(" ", "\xa0") for text in found)  # lines break between them
+    title = textwrap.fill(f"{quantity} within {percent(needed[0].level)}: {told}", _LINE)
+    axes.set_title(title, loc="left", x=-0.17, fontsize=9)
+    axes.set_ylabel("off by, of a" if quantity in _OF_A else "off by", fontsize=9)
 
 
-def _draw_trend(axes: "Axes", study: SizeStudy, model: Sizes, trend: Trend) -> None:
-    """Draw points, law and needed sizes of one quantity of one model."""
+def _with_unit(size: str, unit: str) -> str:
+    return f"{size} {unit}" if unit and size[-1].isdigit() else size
+
+
+def _draw_trend(axes: "Axes", study: SizeStudy, model: Sizes, trend: Trend, bottom: float) -> None:
+    """Draw the line, the law beyond the solved sizes, and the needed sizes of one quantity of one model."""
     size, off, style = model.size, model.off[trend.quantity], _MODELS[model.name]
+    near = (size < model.limit) & (size > 0)
+    axes.plot(size[near], np.where(off > 0, off, np.nan)[near], color="black", **style, zorder=3)
+    if trend.law and _farthest(study) > size[near].max():
+        along = np.geomspace(size[near].max(), _farthest(study))
+        axes.plot(along, trend.law.at(along), **_BEYOND, zorder=1)
+    if trend.floor and trend.floor.clear and abs(trend.floor.value) > bottom:
+        axes.axhline(abs(trend.floor.value), **_REMAINS, zorder=1)
     for needed in trend.needed:
-        _draw_needed(axes, needed, _farthest(study))
-    if law := trend.law:
-        for reach, line in (((min(law.sizes), max(law.sizes)), style["ls"]), ((size.min(), _farthest(study)), ":")):
-            along = np.geomspace(*reach)
-            axes.plot(along, law.at(along), color="black", ls=line, lw=0.9, zorder=1)
-    if trend.floor and trend.floor.clear:
-        axes.axhline(abs(trend.floor.value), **_REMAINS, ls=style["ls"], zorder=1)
-    fitted = np.array([point is PointStatus.FITTED for point in trend.points])
-    for which, fill in ((~fitted & (size < model.limit), "white"), (fitted, "black")):
-        shown = np.where(off > 0, off, np.nan)[which]
-        axes.plot(size[which], shown, style["marker"], mec="black", mfc=fill, ms=5, zorder=3)
+        _draw_needed(axes, needed, bottom, _farthest(study))
+
+
+def _draw_needed(axes: "Axes", needed: Needed, bottom: float, farthest: float) -> None:
+    """Mark the size for one level, and its number where the falling difference leaves room: above, on the right."""
+    spread = needed.kind in (Kind.EXTRAPOLATED, Kind.BOUND) and needed.high < math.inf
+    if spread and 0 < needed.low < (high := min(needed.high, farthest)):
+        axes.plot([needed.low, high], [needed.level] * 2, **_INTERVAL, zorder=2)
+    if needed.size <= farthest:
+        axes.plot([needed.size] * 2, [needed.level, bottom], **_MARK, markevery=[1], clip_on=False, zorder=2)
+        axes.annotate(needed.short, (needed.size, needed.level), **_NUMBER)
 
 
 def _farthest(study: SizeStudy) -> float:
-    """Return the largest size that is shown."""
-    sizes = _all_sizes(study)
-    return min(max([*sizes, *_extrapolated(study)]), _FARTHEST * max(sizes))
-
-
-def _lowest(study: SizeStudy) -> float:
-    """Return the smallest difference, error of the mesh or level."""
-    values = [each for model in study.models for found in (model.off, model.mesh) for each in found.values()]
-    known = np.concatenate([*values, LEVELS])
-    return float(known[known > 0].min())
+    """Return the largest size that is shown: rounded up if it was not solved."""
+    largest = max(_all_sizes(study))
+    sizes = [needed.size for trend in study.trends for needed in trend.needed if needed.kind is Kind.EXTRAPOLATED]
+    if not sizes or max(sizes) <= largest:
+        return largest
+    wanted = min(1.3 * max(sizes), _FARTHEST * largest)
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return math.ceil(wanted / power) * power
 
 
 def _all_sizes(study: SizeStudy) -> list[float]:
@@ -124,92 +144,69 @@ def _failed(study: SizeStudy) -> list[float]:
     return [size for size in study.models[0].failed if size < study.models[0].limit]
 
 
-def _extrapolated(study: SizeStudy) -> list[float]:
-    """Return the upper ends of extrapolated sizes."""
-    return [needed.high for trend in study.trends for needed in trend.needed if needed.kind is Kind.EXTRAPOLATED]
-
-
-def _draw_needed(axes: "Axes", needed: Needed, farthest: float) -> None:
-    """Draw the size for one level on the level's line."""
-    if needed.kind is Kind.BOUND:
-        for at, key in ((needed.low, "more"), (needed.high, "at most")):
-            if 0 < at < np.inf:
-                axes.plot(at, needed.level, **_MARKS[key], zorder=2)
-        return
-    if needed.kind is Kind.EXTRAPOLATED and needed.low < farthest:
-        axes.plot([needed.low, min(needed.high, farthest)], [needed.level] * 2, **_MARKS["interval"], zorder=2)
-    if needed.size <= farthest:
-        axes.plot(needed.size, needed.level, **_MARKS["size"], zorder=2)
-
-
 def _put_sizes(axes: "Axes", study: SizeStudy) -> None:
-    """Set logarithmic axes with ticks at the sizes that were solved or failed."""
+    """Set logarithmic axes with ticks at the sizes that were solved or failed, and at the largest shown."""
     axes.set(xscale="log", yscale="log")
-    sizes = [size for size in _all_sizes(study) if size > 0]
-    width = math.log(_farthest(study) / sizes[0]) or 1.0
-    axes.set_xlim(sizes[0] * math.exp(-0.05 * width), _farthest(study) * math.exp(0.05 * width))
+    sizes = sorted({size for size in (*_all_sizes(study), _farthest(study)) if size > 0})
+    width = math.log(sizes[-1] / sizes[0]) or 1.0
+    axes.set_xlim(sizes[0] * math.exp(-0.03 * width), sizes[-1] * math.exp(0.03 * width))
     _put_ticks(axes.xaxis, sizes, lambda label: width * _LETTER * (len(label) + 1))
 
 
 def _put_ticks(axis: "XAxis | YAxis", values: Sequence[float], room: Callable[[str], float]) -> None:
-    """Put the ticks of a logarithmic axis at ``values``, and labels where there is ``room(label)``, in logarithms."""
+    """Put the ticks of a logarithmic axis at ``values``, and labels at both ends and where there is ``room(label)``, in
+    logarithms."""
     from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 
-    labels, free = [], -math.inf
-    for value in values:
-        label = f"{value:.3g}"
-        at, half = math.log(value), 0.5 * room(label)
-        labels.append(label if at - half >= free else "")
+    texts = [size_text(value) for value in values]
+    places = [(math.log(value), 0.5 * room(text)) for value, text in zip(values, texts, strict=True)]
+    free, last, labels = -math.inf, places[-1][0] - places[-1][1], []
+    for number, (text, (at, half)) in enumerate(zip(texts, places, strict=True)):
+        fits = at - half >= free and at + half <= last
+        labels.append(text if number in (0, len(texts) - 1) or fits else "")
         free = at + half if labels[-1] else free
     axis.set_major_locator(FixedLocator(values))
     axis.set_major_formatter(FixedFormatter(labels))
     axis.set_minor_locator(NullLocator())
 
 
-_MODELS = {HALF_PLANE: {"marker": "o", "ls": "-"}, EQUIVALENT: {"marker": "s", "ls": "--"}}
-_POINT = {"ls": "", "mec": "black", "ms": 5}
-_BOUND = {"mec": "black", "mfc": "white", "ls": "", "ms": 5}
-_REMAINS: dict[str, Any] = {"color": "0.4", "lw": 1.6}
-_FAILED: dict[str, Any] = {"color": "0.5", "lw": 1.2, "ls": (0, (1, 2))}
-_MARKS: dict[str, dict[str, Any]] = {
-    "size": {"color": "black", "marker": "|", "ls": "", "ms": 9, "mew": 1.6},
-    "interval": {"color": "black", "alpha": 0.5, "lw": 2.4, "solid_capstyle": "butt"},
-    "at most": {"marker": "<", **_BOUND},
-    "more": {"marker": ">", **_BOUND},
+_MODELS: dict[str, dict[str, Any]] = {
+    HALF_PLANE: {"marker": "o", "ls": "-", "ms": 5, "mfc": "black", "lw": 1.2},
+    EQUIVALENT: {"marker": "s", "ls": "--", "ms": 5, "mfc": "white", "lw": 1.2},
 }
+_SHORT = {HALF_PLANE: "half-planes", EQUIVALENT: "equivalent"}
+_LEVEL: dict[str, Any] = {"color": "0.5", "lw": 0.7}
+_BEYOND: dict[str, Any] = {"color": "black", "lw": 1.0, "ls": ":"}
+_MESH: dict[str, Any] = {"color": "0.9", "lw": 0, "zorder": -1}
+_MARK: dict[str, Any] = {"color": "black", "lw": 0.8, "ls": (0, (3, 2)), "marker": "v", "ms": 4}
+_NUMBER: dict[str, Any] = {
+    "xytext": (2, 4), "textcoords": "offset points", "fontsize": 8.5, "zorder": 2.5,
+    "bbox": {"fc": "white", "ec": "none", "pad": 0.4},
+}  # fmt: skip
+_INTERVAL: dict[str, Any] = {"color": "0.6", "lw": 3.0, "solid_capstyle": "butt"}
+_REMAINS: dict[str, Any] = {"color": "0.4", "lw": 1.4, "ls": (0, (6, 1.5, 1, 1.5))}
+_FAILED: dict[str, Any] = {"color": "0.5", "lw": 1.2, "ls": (0, (1, 2))}
 
 
-def _keys(study: SizeStudy) -> "list[Line2D]":
+def _keys(study: SizeStudy, low: float) -> "list[Artist]":
     """Return the entries of the legend: of what is drawn."""
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
-    needed = [each for trend in study.trends for each in trend.needed]
-    bounds = [each for each in needed if each.kind is Kind.BOUND]
-    entries: list[tuple[str, dict[str, Any], bool]] = []
-    for model in study.models:
-        points = {point for trend in model.trends for point in trend.points}
-        name, point = model.name, _POINT | {"marker": _MODELS[model.name]["marker"]}
-        entries += [
-            (f"{name}, fitted", {"mfc": "black", **point}, PointStatus.FITTED in points),
-            (f"{name}, not fitted", {"mfc": "white", **point}, bool(points - {PointStatus.FITTED, PointStatus.LIMIT})),
-        ]
-    for model in study.models:
-        fitted = any(trend.law for trend in model.trends)
-        style = {"color": "black", "lw": 0.9, "ls": _MODELS[model.name]["ls"]}
-        entries.append((f"law, {model.name}", style, fitted))
-    mesh = any((each > 0).any() for each in study.models[0].mesh.values())
-    entries += [
-        ("law beyond the fitted sizes", {"color": "black", "lw": 0.9, "ls": ":"},
-         any(trend.law for trend in study.trends)),
-        ("remains at an infinite size", _REMAINS, any(trend.floor and trend.floor.clear for trend in study.trends)),
-        ("error of the mesh", {"color": "0.6", "marker": ".", "ms": 3, "lw": 0.6}, mesh),
-        ("below the level from here on", _MARKS["size"], any(math.isfinite(each.size) for each in needed)),
-        ("95 % interval, extrapolated", _MARKS["interval"], bool(_extrapolated(study))),
-        ("at most this size", _MARKS["at most"], any(each.high < math.inf for each in bounds)),
-        ("more than this size", _MARKS["more"], any(each.low > 0 for each in bounds)),
+    trends = study.trends
+    needed = [each for trend in trends for each in trend.needed]
+    between = any(each.kind is Kind.BOUND and 0 < each.low < each.high < math.inf for each in needed)
+    entries: list[tuple[str, dict[str, Any], bool]] = [
+        *((NAMES[model.name], {"color": "black", **_MODELS[model.name]}, True) for model in study.models),
+        ("size needed", _MARK, any(math.isfinite(each.size) for each in needed)),
+        ("law", _BEYOND, _farthest(study) > max(_all_sizes(study))),
+        ("the size lies within", _INTERVAL, between or any(each.kind is Kind.EXTRAPOLATED for each in needed)),
+        ("at an infinite size", _REMAINS, any(trend.floor and trend.floor.clear for trend in trends)),
         ("not solved", _FAILED, bool(_failed(study))),
     ]  # fmt: skip
-    return [Line2D([], [], label=label, **style) for label, style, drawn in entries if drawn]
+    mesh = any((each > low).any() for each in study.models[0].mesh.values())
+    patches = [Patch(label="error of the mesh", color=_MESH["color"])] if mesh else []
+    return [*(Line2D([], [], label=label, **style) for label, style, drawn in entries if drawn), *patches]
 
 
 def grid_svg(x: Array, y: Array, off: Array, labels: tuple[str, str], title: str) -> str:

@@ -4,7 +4,7 @@ A difference is d(s) = d_inf +- C s^-k: d_inf remains however large the varied s
 """
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cached_property
@@ -16,15 +16,40 @@ from scipy.stats import t as student
 
 from partialslip.study.size.case import HALF_PLANE
 from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
 
 CLEAR = 10.0  # accuracy: a difference counts if it exceeds the mesh's error by this factor
-LEVELS = (1e-2, 1e-3, 1e-4)  # display: differences for which the sizes needed are told
+LEVELS = (1e-2, 1e-3, 1e-4)  # display: differences for which the sizes needed are told, unless others are given
 _FEWEST = 3  # accuracy: points of a law
 _SHARE = 0.95  # accuracy: of confidence
 # accuracy: times the largest solved size: as far as a law is trusted; and the size: the farthest end of its interval
 BEYOND = 10.0
 # limit: times the largest difference of the sizes: a larger one at the size that stands for an infinite one has grown
 _GROWS = 3.0
+
+
+Levels = Mapping[str, tuple[float, ...]]
+
+
+def levels(texts: Sequence[str]) -> Levels:
+    """Parse levels ``2%`` or ``0.02`` of all quantities, key "", and ``m=2%`` of one.
+
+    Raises
+    ------
+    InputError
+        If a text is no share.
+    """
+    found: dict[str, tuple[float, ...]] = {}
+    for text in texts:
+        quantity, _, share = text.rpartition("=")
+        try:
+            level = float(share.strip().removesuffix("%")) / (100 if share.strip().endswith("%") else 1)
+        except ValueError:
+            level = math.nan
+        if not 0 < level < 1:
+            raise InputError(f"--level {text}: must be a share > 0 and < 1, for example 2% or, of one quantity, m=2%")
+        found[quantity] = (*found.get(quantity, ()), level)
+    return found
 
 
 @dataclass(frozen=True)
@@ -46,6 +71,8 @@ class Sizes:
         Values along the axis without a solution, and why.
     limit : float
         Value that stands for an infinite size: the difference there is what remains; infinite if there is none.
+    levels : mapping of str to tuple of float
+        Differences by quantity for which the sizes needed are told (:func:`levels`).
     """
 
     name: str
@@ -54,6 +81,7 @@ class Sizes:
     mesh: Mapping[str, Array]
     failed: Mapping[float, str] = field(default_factory=dict)
     limit: float = math.inf
+    levels: "Levels" = field(default_factory=dict)
 
     @cached_property
     def off(self) -> Mapping[str, Array]:
@@ -217,11 +245,16 @@ class Needed:
         if self.kind is Kind.NEVER and self.remains:
             return f"{self.kind}: {100 * abs(self.remains.value):.2g} % remains"
         if self.kind is Kind.EXTRAPOLATED:
-            return f"{_digits(self.size)} ({_digits(self.low)} to {_digits(self.high)}), {self.kind}"
-        if self.kind is Kind.INTERPOLATED:
-            return f"{_digits(self.size)}, {self.kind}"
-        if self.kind is Kind.MEASURED:
-            return f"{self.size:.4g}, {self.kind}"
+            return f"{self.short} ({_digits(self.low)} to {_digits(self.high)}), {self.kind}"
+        return f"{self.short}, {self.kind}" if math.isfinite(self.size) else self.short
+
+    @property
+    def short(self) -> str:
+        """The size, or its bounds, alone."""
+        if self.kind is Kind.NEVER:
+            return f"{self.kind}"
+        if self.kind is not Kind.BOUND:
+            return f"{self.size:.4g}" if self.kind is Kind.MEASURED else _digits(self.size)
         if self.low == 0:
             return f"<= {self.high:.4g}" if self.high < math.inf else "not known"
         return f"> {self.low:.4g}" if self.high == math.inf else f"{self.low:.4g} to {self.high:.4g}"
@@ -244,7 +277,7 @@ class Trend:
         One per size.
     law : Law or None
     needed : tuple of Needed
-        One per level in LEVELS.
+        One per level.
     floor : Floor or None
         What remains at an infinite size; None if not known.
     """
@@ -286,7 +319,8 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
     }
     points = np.select([*which.values()], [*which], PointStatus.NO_VALUE)
     order = np.flatnonzero(near)
-    needed = tuple(_needed(level, size[order], off[order], mesh[order], sure[order], law, floor) for level in LEVELS)
+    asked = sizes.levels.get(quantity) or sizes.levels.get("") or LEVELS
+    needed = tuple(_needed(level, size[order], off[order], mesh[order], sure[order], law, floor) for level in asked)
     return Trend(quantity, tuple(map(PointStatus, points)), law, needed, floor)
 
 

@@ -5,6 +5,7 @@ import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from itertools import starmap
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from msgspec.structs import replace
 
 from partialslip.report.record import Record
 from partialslip.result.record import ResultRecord
-from partialslip.run.judge.known import error_of
+from partialslip.run.judge.reference import error_of
 from partialslip.scene import Scene
 from partialslip.scene.units import Dimension, Units
 from partialslip.study.batch.job import Job, Sharing
@@ -22,7 +23,7 @@ from partialslip.study.fatigue import HotSpot
 from partialslip.study.fatigue.spots import SIGMA, off_by
 from partialslip.study.size.axes import ACCURACY, Axis, cases
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solve_sized
-from partialslip.study.size.law import CLEAR, Sizes
+from partialslip.study.size.law import CLEAR, Levels, Sizes
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 from partialslip.tools.groups import grouped
@@ -110,8 +111,9 @@ def _point(axes: Sequence[Axis], of: Job | Sized) -> tuple[float, ...]:
     return tuple(float(of.labels[each.name]) for each in axes)
 
 
-def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes:
-    """Return the sweep along ``axis`` of the half-planes ``name`` from ``entries`` of a ledger."""
+def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE, levels: Levels = MappingProxyType({})) -> Sizes:
+    """Return the sweep along ``axis`` of the half-planes ``name`` from ``entries`` of a ledger, for ``levels`` of the
+    differences."""
     entries = list(entries)
     keys = (*DIFFERENCES, *stress_quantities(entries))
     none = dict.fromkeys(keys, math.nan)
@@ -128,6 +130,7 @@ def along(axis: Axis, entries: Iterable[Sized], name: str = HALF_PLANE) -> Sizes
         {key: np.array([mesh[key] for _, mesh in points.values()]) for key in keys},
         {size: error for size, error in sorted(errors.items()) if size not in points},
         axis.limit,
+        levels,
     )
 
 

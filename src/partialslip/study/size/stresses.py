@@ -5,19 +5,22 @@ from collections.abc import Iterable, Sequence
 
 from partialslip.report.answer import scale, with_error
 from partialslip.scene import Fatigue, Scene
+from partialslip.scene.plan import asks_for_stresses
 from partialslip.scene.units import Dimension
 from partialslip.study.fatigue import HotSpot
 from partialslip.study.fatigue.criteria import CRITERIA, RUIZ, chosen
 from partialslip.study.fatigue.places import OVER
+from partialslip.study.fatigue.spots import SIGMA
 from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE
 from partialslip.study.size.law import Sizes
 from partialslip.study.size.sizes import DIFFERENCES
-from partialslip.study.size.tables import Rows, SizeStudy, marked, mesh_share, size_text
+from partialslip.study.size.tables import Rows, SizeStudy, marked, mesh_share, row_text
 from partialslip.tools.errors import InputError
 from partialslip.tools.output.files import csv_text
 
+USUAL = ("m", "n", SIGMA)  # display: quantities of which the answer tells
 _SURFACE = "surface"
-_USUAL = "swt"  # display: the criterion of scenes that have no constants of a criterion
+_CRITERION = "swt"  # display: the criterion of scenes that have no constants of a criterion
 _MODELS = (FEM, HALF_PLANE, EQUIVALENT)
 _UNLIKE = "stresses of the half-plane are not known: no method finds them in half-planes of unlike materials"
 NOT_ASKED = "no stresses: the table fatigue has no constant; --set effects.subsurface=true tells the largest sigma_xx"
@@ -33,7 +36,7 @@ def criteria_of(scene: Scene, names: Sequence[str] | None) -> list[str]:
         If a criterion is unknown or is not evaluated by the study, or a constant is missing.
     """
     if names is None:
-        return [name for name in chosen(scene, None) if CRITERIA[name].needs] or [_USUAL]
+        return [name for name in chosen(scene, None) if CRITERIA[name].needs] or [_CRITERION]
     found = chosen(scene, names)
     if RUIZ in found:
         raise InputError(f"--criterion {RUIZ}: must be another for a study of sizes; use partialslip fatigue")
@@ -41,6 +44,26 @@ def criteria_of(scene: Scene, names: Sequence[str] | None) -> list[str]:
         needs = "a constant in the table fatigue, for example --set fatigue.distance=LENGTH"
         raise InputError(f"--criterion {','.join(found)}: must be given only with {needs}")
     return found
+
+
+def quantities_of(scene: Scene, names: Sequence[str] | None, criteria: Sequence[str], asked: bool) -> list[str]:
+    """Return the quantities of which a study of ``scene`` answers: ``names``; by default m, n, the largest sigma_xx
+    and, if ``asked`` for, the ``criteria``.
+
+    Raises
+    ------
+    InputError
+        If a quantity is unknown, or the study has no stresses.
+    """
+    if names is None:
+        return [*USUAL, *(criteria if asked else ())]
+    averaged = [f"{name}.{place}" for name in criteria for place in OVER]
+    known = [*DIFFERENCES, *((SIGMA, *criteria, *averaged) if asks_for_stresses(scene) else ())]
+    for name in names:
+        if name not in known:
+            why = "" if asks_for_stresses(scene) else f"; {NOT_ASKED}"
+            raise InputError(f"--show {name}: must be of {', '.join(known)}{why}")
+    return [*names]
 
 
 def stresses_of(study: SizeStudy) -> SizeStudy:
@@ -63,7 +86,12 @@ def largest_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
         for size, found in study.spots.items():
             spots = [found.get(name, {}).get(key) for name in known]
             rows.append(
-                (key, unit[1], size_text(size), *(cell for spot in spots for cell in _cells(spot, unit[0], length[0])))
+                (
+                    key,
+                    unit[1],
+                    row_text(study.models[0], size),
+                    *(cell for spot in spots for cell in _cells(spot, unit[0], length[0])),
+                )
             )
     heads = [head for name in known for head in (name, f"x, {length[1]}")]
     return ("largest", "unit", "size", *heads), rows
@@ -83,7 +111,7 @@ def _cells(spot: HotSpot | None, exponent: int, length: int) -> tuple[str, str]:
 
 
 def stress_differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str, ...], Rows]:
-    """Return headings and rows of the relative differences of stresses, by size and place; letters as in
+    """Return headings and rows of the relative differences of stresses, by size and place; stars as in
     :func:`partialslip.study.size.tables.differences_table`."""
     part = model.part(stresses_of(study).quantities)
     sizes, points = part, {trend.quantity: trend.points for trend in part.trends}
@@ -95,7 +123,7 @@ def stress_differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str,
             shown = [key for key in keys if key in points and not math.isnan(sizes.off[key][k])]
             if shown:
                 cells = [marked(sizes.off[key][k], points[key][k]) if key in shown else "" for key in keys]
-                rows.append((size_text(size), place, *cells, mesh_share(sizes, shown, k)))
+                rows.append((row_text(sizes, size), place, *cells, mesh_share(sizes, shown, k)))
     return ("size", "stresses", *columns, "mesh"), rows
 
 
@@ -110,7 +138,7 @@ def in_short(study: SizeStudy) -> list[str]:
         stresses, ends = _percents(sizes, keys, k, ""), _percents(sizes, ("m", "n"), k, " of a")
         if stresses:
             lines.append(
-                "; ".join(filter(None, (f"size {size_text(size)}: the half-plane is off by {stresses}", ends)))
+                "; ".join(filter(None, (f"size {row_text(sizes, size)}: the half-plane is off by {stresses}", ends)))
             )
     return lines
 

@@ -3,29 +3,21 @@
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 from partialslip.scene import Scene
 from partialslip.study.fatigue import HotSpot
 from partialslip.study.size.axes import Axis
 from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, Sized
-from partialslip.study.size.law import LEVELS, Kind, Needed, PointStatus, Sizes, Trend
+from partialslip.study.size.law import Kind, Levels, Needed, PointStatus, Sizes, Trend
 from partialslip.study.size.sizes import along, hot_spots_along, refused
 from partialslip.tools.output.files import csv_text
 
 Rows = list[tuple[str, ...]]
-_MARKS = {
-    PointStatus.FITTED: "f",
-    PointStatus.SMALLER: "s",
-    PointStatus.UNCLEAR: "e",
-    PointStatus.UNKNOWN: "u",
-    PointStatus.FEW: "x",
-    PointStatus.NO_LAW: "n",
-    PointStatus.FLOOR: "r",
-    PointStatus.LIMIT: "v",
-    PointStatus.NO_LIMIT: "l",
-}
+NAMES = {HALF_PLANE: "half-planes", EQUIVALENT: "equivalent half-planes"}
+INFINITE = "infinite"  # size that stands for an infinite one
 _BY = "half-planes"  # heading of the names of models
-_ASKED = ("m", "n", "sigma_xx")  # of which the answer tells
+_FITTED = "*"
 _LISTED = 3  # display: largest number of sizes that are listed
 _MEANINGS = {
     Kind.MEASURED: "measured: a solved size, where the difference is the level within the mesh's error",
@@ -83,11 +75,16 @@ class SizeStudy:
         return [trend for model in self.models for trend in model.trends]
 
 
-def size_study(scene: Scene, axis: Axis, entries: Sequence[Sized]) -> SizeStudy:
-    """Evaluate the ``entries`` of a ledger for a sweep of ``scene`` along ``axis``."""
-    sweeps = [along(axis, entries, name) for name in (HALF_PLANE, EQUIVALENT)]
+def size_study(scene: Scene, axis: Axis, entries: Sequence[Sized], levels: Levels = MappingProxyType({})) -> SizeStudy:
+    """Evaluate the ``entries`` of a ledger for a sweep of ``scene`` along ``axis``, for ``levels`` of the differences
+    (:func:`partialslip.study.size.law.levels`)."""
+    sweeps = [along(axis, entries, name, levels) for name in (HALF_PLANE, EQUIVALENT)]
     models = tuple(each for each in sweeps if each.name == HALF_PLANE or each.size.size)
-    remarks = (*case_remarks([axis], entries), _limit_remark(scene, axis, models[0]))
+    halves = [
+        f"{name} stands on rollers, half of a specimen: --over {name}.thickness=... gives twice the height"
+        for name in axis.halves(scene)
+    ]
+    remarks = (*case_remarks([axis], entries), _limit_remark(scene, axis, models[0]), *halves)
     return SizeStudy(scene, axis, models, remarks, hot_spots_along(axis, entries))
 
 
@@ -126,35 +123,48 @@ def size_heading(study: SizeStudy) -> str:
     return f"{study.scene.name}: half-planes against finite elements, over {study.label}"
 
 
-def size_answer(study: SizeStudy) -> str:
-    """Return from which size on half-planes are within the first level, as one line: m, n and the largest sigma_xx."""
-    trends = {trend.quantity: trend for trend in study.models[0].trends}
-    asked = [key for key in _ASKED if key in trends] or [*trends][:1]
-    parts = [f"{key} {_from_size(trends[key].needed[0])}" for key in asked]
-    return f"half-planes are within {100 * LEVELS[0]:g} % by {study.label}: {', '.join(parts)}"
+def size_answers(study: SizeStudy) -> list[str]:
+    """Return from which size on the first level of each quantity is kept: a line for the half-plane, and one for
+    equivalent half-planes."""
+    unit = study.axis.unit(study.scene.units)
+    return [
+        f"{NAMES[model.name]}: "
+        + ", ".join(
+            f"{trend.quantity} within {percent(trend.needed[0].level)}{_from_size(trend.needed[0], unit)}"
+            for trend in model.trends
+        )
+        for model in study.models
+        if model.trends
+    ]
 
 
-def _from_size(needed: Needed) -> str:
-    """Return from which size on a level is kept, as text."""
+def percent(level: float) -> str:
+    """Return a level as text."""
+    return f"{100 * level:g} %"
+
+
+def _from_size(needed: Needed, unit: str = "") -> str:
+    """Return from which size on, in ``unit``, a level is kept, as text that follows the level."""
+    unit = f" {unit}" if unit else ""
     if needed.kind is Kind.NEVER:
-        return str(needed).replace(": ", " (") + ")"
+        return ": " + str(needed).replace(": ", " (") + ")"
     if needed.kind is not Kind.BOUND:
-        return f"from {size_text(needed.size)} on"
+        return f" from {needed.short}{unit} on"
     if needed.high == math.inf:
-        return f"not up to {size_text(needed.low)}" if needed.low else "not known"
-    return f"from {size_text(needed.high)} on at the latest"
+        return f": not up to {size_text(needed.low)}{unit}" if needed.low else ": not known"
+    return f" from {size_text(needed.high)}{unit} on at the latest"
 
 
 def differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str, ...], Rows]:
-    """Return headings and rows of the differences by size; a letter says whether the law is fitted to a difference."""
+    """Return headings and rows of the differences by size; a star says that the law is fitted to a difference."""
     points = {trend.quantity: trend.points for trend in model.trends}
-    solved: dict[float, tuple[str, ...]] = {
+    solved = {
         size: (*(marked(model.off[key][k], points[key][k]) for key in points), mesh_share(model, points, k))
         for k, size in enumerate(model.size.tolist())
     }
     without = study.models[0].size.tolist() if model.name == EQUIVALENT else ()
     failed = {size: (*["-"] * len(points), "") for size in (*model.failed, *without)}
-    rows = [(size_text(size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
+    rows = [(row_text(model, size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
     return ("size", *points, "mesh"), rows
 
 
@@ -172,8 +182,12 @@ def laws_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
 def needed_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
     """Return headings and rows of the sizes from which on the difference is below each level, and how they are
     known."""
-    rows = [(*of, *map(str, trend.needed)) for *of, trend in _by_quantity(study)]
-    return ("below", _BY, *(f"{100 * level:g} %" for level in LEVELS)), rows
+    levels = sorted({needed.level for trend in study.trends for needed in trend.needed}, reverse=True)
+    rows: Rows = [
+        (*of, *("".join(str(needed) for needed in trend.needed if needed.level == level) for level in levels))
+        for *of, trend in _by_quantity(study)
+    ]
+    return ("below", _BY, *map(percent, levels)), rows
 
 
 def _by_quantity(study: SizeStudy) -> list[tuple[str, str, Trend]]:
@@ -187,20 +201,17 @@ def _by_quantity(study: SizeStudy) -> list[tuple[str, str, Trend]]:
     ]
 
 
-def size_notes(study: SizeStudy) -> list[str]:
-    """Return what the letters and words of the tables mean, and which cases failed."""
-    points = {point for trend in study.trends for point in trend.points}
+def kinds_notes(study: SizeStudy) -> list[str]:
+    """Return what the words of the sizes needed mean."""
     kinds = {needed.kind for trend in study.trends for needed in trend.needed}
-    lines = [
-        *(f"{mark}: {_fitted(point)}" for point, mark in _MARKS.items() if point in points),
-        *(["mesh: the largest share of a difference that may be an error of the mesh"] if points else []),
-        *(meaning for kind, meaning in _MEANINGS.items() if kind in kinds),
-    ]
-    return [*lines, *study.remarks]
+    return [meaning for kind, meaning in _MEANINGS.items() if kind in kinds]
 
 
-def _fitted(point: PointStatus) -> str:
-    return f"{point}" if point in (PointStatus.FITTED, PointStatus.LIMIT) else f"not fitted: {point}"
+def table_notes(study: SizeStudy) -> list[str]:
+    """Return what the marks of the tables of differences mean."""
+    points = {point for trend in study.trends for point in trend.points}
+    lines = ["mesh: the largest share of a difference that may be an error of the mesh"] if points else []
+    return [f"{_FITTED}: the law is fitted to it; points.csv tells why not to others", *lines]
 
 
 def points_csv(study: SizeStudy) -> str:
@@ -240,10 +251,9 @@ def laws_csv(study: SizeStudy) -> str:
 
 
 def marked(difference: float, point: PointStatus) -> str:
-    """Return a difference as text, with the letter of its point."""
-    if point in _MARKS:
-        return f"{difference:.1e} {_MARKS[point]}"
-    return "-" if math.isnan(difference) else f"{difference:.1e}"
+    """Return a difference as text, with a star if the law is fitted to it."""
+    star = f"{_FITTED} " if point is PointStatus.FITTED else ""
+    return "-" if math.isnan(difference) else f"{star}{difference:.1e}"
 
 
 def mesh_share(sizes: Sizes, quantities: Collection[str], k: int) -> str:
@@ -256,6 +266,11 @@ def mesh_share(sizes: Sizes, quantities: Collection[str], k: int) -> str:
 def size_text(size: float) -> str:
     """Return a size as text."""
     return f"{size:.4g}"
+
+
+def row_text(model: Sizes, size: float) -> str:
+    """Return a size of ``model`` as text; the one that stands for an infinite size by that name."""
+    return INFINITE if size >= model.limit else size_text(size)
 
 
 def _listed(sizes: Sequence[float]) -> str:
