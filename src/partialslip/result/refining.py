@@ -97,8 +97,7 @@ def refine(problem: Refinable[S], progress: Callable[[str], None]) -> S:
     while True:
         found = problem.refined(found)
         pace.took()
-        keys = ", ".join(found.errors)
-        known = f", {keys} known to {worst(found.errors):.1e} a" if keys else ""
+        known = f", {', '.join(found.errors)} known to {worst(found.errors):.1e} a" if found.errors else ""
         progress(f"mesh {problem.meshes}: {found.unknowns}{known}")
         if last := problem.finished(found):
             found = problem.checked(found)
