@@ -107,7 +107,6 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
     """Half-planes of like materials, for :func:`partialslip.march.driver.march`; ``added`` as for
     :func:`partialslip.march.method.solve`."""
 
-    telling = ("m", "n")
     nearly = _NEARLY
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock, added: Added | None) -> None:

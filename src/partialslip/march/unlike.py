@@ -87,7 +87,6 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
     the flat ``punch`` as which the contact grows under an even ``gap``, if it is one. ``followed`` are the errors of
     the load steps, on the first cells that are not coarse. There as many steps are taken as these errors call for."""
 
-    telling = ("a",)
     steps_count = False  # they are as many as their errors call for
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock) -> None:
