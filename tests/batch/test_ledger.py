@@ -77,16 +77,6 @@ def test_a_sound_line_of_another_program_is_refused(tmp_path, value):
     assert path.read_bytes() == before
 
 
-@pytest.mark.parametrize("name", TEXTS)
-def test_text_behind_entries_is_left_as_it_is(tmp_path, name):
-    path = tmp_path / "ledger.jsonl"
-    Ledger(path).add("one", {"found": 1})
-    path.write_bytes(whole := path.read_bytes() + TEXTS[name])
-    with pytest.raises(partialslip.InputError, match=r"line 2: must be an entry of a ledger"):
-        Ledger(path)
-    assert path.read_bytes() == whole
-
-
 def test_an_entry_torn_at_any_byte_is_dropped_and_no_other(tmp_path):
     path = tmp_path / "ledger.jsonl"
     Ledger(path).add("one", {"found": 1})

@@ -87,20 +87,6 @@ def test_a_scene_that_refers_to_the_rig_runs_by_exact_and_equivalent(call):
     assert set(json.loads(out)["methods"]) == {"exact", "equivalent"}
 
 
-@pytest.mark.usefixtures("done")
-def test_once_more_the_files_are_the_same(call, folder):
-    before = (folder / "results/blocks-equivalent/rig.json").read_bytes()
-    code, out, _ = call("equivalent", "blocks.toml", "--force")
-    assert (code, (folder / "results/blocks-equivalent/rig.json").read_bytes()) == (0, before)
-    assert "written: rig.json" in out
-
-
-def test_settings_change_the_scene(call):
-    code, out, _ = call("equivalent", "blocks.toml", "--set", "load.Q=[0, 1e5]", "--out", "other")
-    assert code == 0
-    assert "written: rig.json, half-planes.toml in other" in out
-
-
 def test_units_are_those_of_the_scene(call, folder):
     metres = ("72.8e9", "50e-3", "4e8", "2.3e5", "2.4e8", "16e-3", "8e-3")
     text = TEXT

@@ -1,8 +1,6 @@
 """Notebook display of scenes, results, comparisons and runs: tables, plots, data frames."""
 
 import csv
-import subprocess
-import sys
 from html.parser import HTMLParser
 
 import matplotlib
@@ -168,11 +166,3 @@ def test_what_is_not_determined_is_not_a_number():
     frame = mean.to_dataframe()
     assert frame["q1"].isna().tolist() == (frame["method"] == "exact").tolist()
     assert frame["dq"].notna().all()
-
-
-def test_nothing_is_imported_before_it_is_asked_for():
-    code = "import sys, partialslip\nscene = partialslip.load_scene('hertz-shear')"
-    code += "\nnames = {'jinja2', 'matplotlib', 'pandas'}\nprint(names & {*sys.modules})"
-    code += "\nscene._repr_html_()\nprint(names & {*sys.modules})"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines() == ["set()", "{'jinja2'}"]
