@@ -83,44 +83,6 @@ def test_no_file(rejected, tmp_path, name):
         assert "cannot be read" in rejected(None, ["score", "hertz-shear", name])
 
 
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (["score"], "SCENE"),
-        (["score", "hertz-shear"], "FILE: missing"),
-        (["score", "hertz-sheer", "t.csv"], "did you mean 'hertz-shear'?"),
-        (["score", "hertz-shear", "t.csv", "u.csv"], "u.csv"),
-        (["score", "hertz-shear", "t.csv", "--template"], "--template t.csv: must go without a file"),
-        (["score", "hertz-shear", "t.doc"], "must end in .csv, .txt, .tsv, .rpt, .frd, .dat"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1"], "--factors 1: must be three numbers"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,1,nan"], "--factors 1,1,nan: must be finite and not zero"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,0,1"], "--factors 1,0,1: must be finite and not zero"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,1e200,1"], "must be zero or of a size"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,-1,1"], "pressure must be positive"),
-        (["score", "hertz-shear", "t.csv", "--order", "3"], "--order 3: must be 1 or 2"),
-        (["score", "hertz-shear", "t.csv", "--at", "1,2"], "--at 1,2: must be left out except for .frd and .dat files"),
-        (["score", "hertz-shear", "t.frd", "--at", "1"], "--at 1: must be two whole numbers"),
-        (["score", "hertz-shear", "t.frd", "--at", "1,x"], "--at 1,x: must be two whole numbers"),
-        (["score", "hertz-shear", "t.frd", "--at", "0,1"], "--at 0,1: must be from 1 to 2, contact results of t.frd"),
-        (["score", "hertz-shear", "t.csv", "--bar", "0"], "--bar 0: must be one number, or three"),
-        (["score", "hertz-shear", "t.csv", "--bar", "x"], "--bar x: must be one number, or three"),
-        (["score", "hertz-shear", "t.csv", "--with", "bem"], "bem"),
-        (["score", "hertz-shear", "t.csv", "--out", ""], "must name a folder"),
-        (["score", "hertz-shear", "t.csv", "--out", "t.csv"], "--out t.csv: cannot be written"),
-        (["score", "hertz-shear", "t.csv", "--set", "load.P=1"], "load: exactly one of P, a, p0"),
-        (["score", "hertz-shear", "--template", "--set", "load.p0=0"], "load.p0 = 0: must be > 0"),
-        (["score", "hertz-shear", "--template", "--set", "material.upper.E=1e9", "--set", "material.upper.nu=0.3"],
-         "the bodies differ"),
-        (["score", "hertz-shear", "q.frd", "--set", "load.Q=[1e5,0,-1e5]"], "must be 3 or more, one per load point"),
-    ],
-)  # fmt: skip
-def test_arguments(rejected, tmp_path, arguments, expected):
-    (tmp_path / "t.csv").write_text(TABLE, "utf-8")
-    for name in ("t.frd", "q.frd"):
-        (tmp_path / name).write_bytes(FRD.read_bytes())
-    assert expected in rejected(None, arguments)
-
-
 def swapped(old, new, count=-1):
     return lambda text: text.replace(old, new, count)
 
@@ -257,22 +219,3 @@ STATES = {
 def test_states(rejected, tmp_path, state, fault):
     np.savez(tmp_path / "s.npz", **STATES[fault](state))
     rejected(None, ["run", "hertz-shear", "--with", "march", "--start", "s.npz"])
-
-
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (["--start", "none.npz"], "none.npz: cannot be read"),
-        (["--start", ""], "cannot be read"),
-        (["--start", "."], "cannot be read"),
-        (["--start", "nul\0"], "nul"),
-        (["--save", ""], "--save '': must name a file"),
-        (["--save", "."], "is a folder"),
-        (["--save", "nul\0.npz"], "cannot be written"),
-        (["--save", "bench.toml/s.npz"], "cannot be written"),
-        (["--save", "s.npz", "--with", "exact"], "no method has followed a path"),
-    ],
-)
-def test_places_of_states(rejected, arguments, expected):
-    """Not even the results are written where the state cannot be."""
-    assert expected in rejected("", ["run", "hertz-shear", "--with", "march", *COARSE, *arguments])

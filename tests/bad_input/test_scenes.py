@@ -149,58 +149,6 @@ def test_no_such_scene(rejected, tmp_path, path, expected):
     assert not [part for part in expected if part not in message]
 
 
-@pytest.mark.parametrize(
-    ("setting", "expected"),
-    [
-        ("", "--set : must be table.key=value"),
-        ("=", "--set =: must be table.key=value"),
-        ("load.P", "--set load.P: must be table.key=value"),
-        ("load..P=3", "--set load..P=3: must be table.key=value"),
-        ("name.x=1", "--set name.x=1: name must be a table"),
-        ("load.Q.0=1", "--set load.Q.0=1: Q must be a table"),
-        ("load=1", "load = 1: must be a table"),
-        ("load.p0=", "--set load.p0=: not valid TOML: "),
-        ("load.p0=x y", "load.p0 = 'x y': must be a number"),
-        ("load.p0=1=2", "--set load.p0=1=2: not valid TOML: "),
-        ("load.p0=" + "9" * 5000, "999...: not valid TOML: "),
-        ("x\ny=1", r"x\ny: unknown key"),
-    ],
-)
-def test_bad_setting(rejected, setting, expected):
-    assert expected in rejected(None, [*SHIPPED, "--set", setting])
-
-
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        ([], "COMMAND"),
-        (["bogus"], "'bogus'"),
-        (["run"], "SCENE"),
-        ([*SHIPPED, "--bogus"], "--bogus"),
-        ([*SHIPPED, "extra"], "extra"),
-        (["run", "hertz-shear", "--with", "exat"], "--with 'exat': must be of exact, march, fem, equivalent; did you"),
-        (
-            ["fatigue", "hertz-shear", "--with", "exat"],
-            "'exat' (choose from 'exact', 'march', 'fem'); did you mean 'exact'?",
-        ),
-        (["rnu", "hertz-shear"], "did you mean 'run'?"),
-        (["run", "hertz-shear", "--with", "exact,bem"], "--with 'bem': must be of exact, march, fem"),
-        (["run", "hertz-shear", "--with", ""], "--with '': must be of exact, march, fem"),
-        ([*SHIPPED, "--accuracy", "fine"], "--accuracy 'fine': must be a number"),
-        ([*SHIPPED, "--accuracy", "0"], "fem.accuracy = 0.0: must be >= 1e-09"),
-        ([*SHIPPED, "--out", "bench.toml"], "--out bench.toml: cannot be written"),
-        ([*SHIPPED, "--out", "nul\0"], r"--out nul\x00: cannot be written"),
-        ([*SHIPPED, "--out", ""], "must name a folder"),
-        ([*SHIPPED, "--out", "/proc/x/y"], "--out /proc/x/y: cannot be written: No such file"),
-        ([*SHIPPED, "--acc", "1e-3"], "--acc: did you mean --accuracy? (see partialslip run --help)"),
-        (["study", "cost", "hertz-shear", "--repeat=3"], "--repeats? (see partialslip study cost --help)"),
-        ([*SHIPPED, "--bo\ngus"], r"unknown argument --bo\ngus (see partialslip run --help)"),
-    ],
-)
-def test_bad_arguments(rejected, arguments, expected):
-    assert expected in rejected(GOOD, arguments)
-
-
 def test_what_the_run_refuses_names_the_scene(rejected):
     two = "material={upper={E=72e9, nu=0.3}, lower={E=210e9, nu=0.3}}"
     for scene in ("bench.toml", "hertz-shear"):

@@ -82,24 +82,6 @@ def test_a_run_is_short_and_verbose_on_demand(both, tmp_path):
         assert word not in both.out
 
 
-def test_an_exact_run_says_what_it_found(exact):
-    _, answered, *answer, method, last = exact.out.splitlines()
-    assert answered == "exact: small tension"
-    assert [re.sub(" {2,}", ": ", line.strip()) for line in answer] == [
-        "stick zone: [-0.6324555, 0.6324555] mm",
-        "m, n: 0.6324555 a, 0.6324555 a",
-        "a: 1 mm",
-        "p0: 400 MPa",
-        "p_max: 400 MPa",
-        "largest |q1|: 154.9193 MPa",
-        "largest |q2|: 154.9193 MPa",
-        "largest sigma_xx, 1: 309.8387 MPa at x = -1 mm",
-        "largest sigma_xx, 2: 309.8387 MPa at x = 1 mm",
-    ]
-    assert method.startswith("exact  small tension, 0.0")
-    assert last.startswith("no bars: nothing to compare with; files in ")
-
-
 def test_tractions_table(both):
     table = rows(both.folder)
     assert list(table[0]) == ["method", "x", "x_over_a", "p", "q1", "q2", "dq"]

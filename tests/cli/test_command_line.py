@@ -103,10 +103,6 @@ def test_json_has_no_colours():
     assert ESCAPE not in printed([*EXACT, "--json"], FORCE_COLOR="1")
 
 
-def test_a_shell_without_completion_is_refused(refused):
-    assert "'bash'" in refused("completion", "fish")
-
-
 def completed(script, line):
     """Return bash's completions of the last word of ``line``."""
     words = line.split(" ")

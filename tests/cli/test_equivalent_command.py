@@ -101,23 +101,6 @@ def test_units_are_those_of_the_scene(call, folder):
     assert err.startswith("partialslip: mm.toml: load.displacement = [0, 0.003] mm: must be load.Q here")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("equivalent", "hertz-shear"), "bodies: must have upper or lower"),
-        (("equivalent", "absent.toml"), "absent.toml: cannot be read"),
-        (("equivalent", "blocks.toml", "--set", "load.p0=2e9"), "bodies: must be larger compared with"),
-        (("equivalent", "blocks.toml", "--set", "material.E=-1"), "material.E = -1"),
-        (("equivalent", "blocks.toml", "--out", "blocks.toml"), "--out blocks.toml: cannot be written"),
-        (("verify", "--suite", "stress", "--method", "equivalent"), "must be one of exact, march, fem"),
-        (("score", "blocks.toml", "blocks.toml", "--with", "equivalent"), "choose from 'exact', 'march', 'fem'"),
-    ],
-)
-def test_errors_are_one_line(folder, monkeypatch, refused, arguments, said):
-    monkeypatch.chdir(folder)
-    assert said in refused(*arguments)
-
-
 @pytest.mark.usefixtures("done")
 def test_a_rig_of_other_bodies_is_one_line(refused):
     said = refused("run", "referring.toml", "--set", "bodies.upper.height=9e-3", "--with", "equivalent")

@@ -69,17 +69,6 @@ def test_units_have_plain_letters():
     assert "1 µm".encode("latin-1", "partialslip").decode("latin-1") == "1 µm"
 
 
-@pytest.mark.parametrize("columns", ["0", "20", "100000000000"])
-def test_widths_out_of_the_ordinary(tmp_path, columns, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", columns)
-    assert main(["run", "hertz-shear", "--with", "exact,march", "--set", "fem.accuracy=0.1"]) == 0
-    out = capsys.readouterr().out
-    longest = max(len(line.rstrip()) for line in out.splitlines() if " in results" not in line)
-    assert 10 < longest <= (20 if columns == "20" else 1000)
-    assert "0.6324555" in out
-
-
 def test_no_word_of_matplotlib_where_home_cannot_be_written(tmp_path):
     (tmp_path / "file").touch()
     nowhere = {"HOME": str(tmp_path / "file"), "MPLCONFIGDIR": str(tmp_path / "file"), "XDG_CACHE_HOME": ""}

@@ -274,42 +274,6 @@ def test_words_on_a_scene(overrides, expected):
     assert (data.point is None) != ("the scene's loads" in map_files.map_svg(data))
 
 
-GOOD = (Path(__file__).parents[2] / "src/partialslip/scene/shipped/hertz-large-tension.toml").read_text("utf-8")
-
-
-@pytest.mark.parametrize(
-    ("text", "arguments", "expected"),
-    [
-        (GOOD, ["--out", "file"], "--out file: cannot be written: "),
-        (GOOD, ["--out", ""], "--out '': must name a folder"),
-        (GOOD, ["--out", "."], "map.csv: cannot be written: is a folder"),
-        (GOOD, ["--bogus"], "--bogus"),
-        (GOOD.replace("f = 0.5", "f = 0"), [], "friction.f = 0: must be > 0"),
-    ],
-)
-@pytest.mark.usefixtures("coarse")
-def test_bad_input_is_refused_in_one_line(tmp_path, monkeypatch, refused, text, arguments, expected):
-    monkeypatch.chdir(tmp_path)
-    Path("bench.toml").write_text(text, "utf-8")
-    Path("file").write_text("", "utf-8")
-    Path("map.csv").mkdir()
-    before = sorted(tmp_path.rglob("*"))
-    assert expected in refused("map", "bench.toml", *arguments)
-    assert sorted(tmp_path.rglob("*")) == before
-
-
-def test_a_map_says_what_it_can_draw(refused):
-    """And not what other commands can."""
-    assert "must be of one material for a map\n" in refused(
-        "map", "hertz-shear", "--set", "material={upper={E=2e11,nu=0.3},lower={E=7e10,nu=0.3}}"
-    )
-
-
-def test_settings_of_no_scene_are_refused(refused):
-    said = refused("map", "--set", "friction.f=0.3")
-    assert said == "partialslip: --set friction.f=0.3: must have a SCENE, for example hertz-shear\n"
-
-
 def stop(*_, **__):
     raise KeyboardInterrupt
 

@@ -275,29 +275,6 @@ def test_opposing_slip_is_left_out_where_tension_is_small(Qf):
     assert P > 0
 
 
-REFUSED = {
-    "effects.normal=false": "without pressure there is no contact; must be true",
-    "effects.friction=true friction.f=0.01": "the contact slides",
-    "effects.friction=true friction.f=0": "f = 0",
-    "effects.opposing-slip=false load.sigma=[-3e8,3e8]": "large tension",
-    "effects.history=false load.sigma=[0,1e8,0] load.Q=[0,1e4,1e4]": "out of phase",
-    "effects.history=false material.upper.E=400e9 material.upper.nu=0.3 load.Q=[-1e5,1e5]": "depends on the path",
-    "effects.finite-size=true": "have no size; must be false",
-    "effects.far-field=true " + " ".join(BLOCKS): "no half-plane around them",
-    "effects.frction=true": "did you mean 'friction'?",
-    "effects.opposing_slip=true": "did you mean 'opposing-slip'?",
-    "effects.friction=1": "must be true or false, not a whole number",
-}
-
-
-@pytest.mark.parametrize("settings", REFUSED)
-def test_what_cannot_be_forced_is_refused_in_one_line(settings, refused, tmp_path):
-    overrides = [part for setting in settings.split(" ") for part in ("--set", setting)]
-    line = refused("run", "hertz-shear", "--with", "fem", "--set", SIZE, *overrides, "--out", str(tmp_path))
-    assert REFUSED[settings] in line
-    assert "effects" in line
-
-
 def test_what_is_called_for_may_be_forced_on():
     """Shear that makes the contact slide is called for, though friction is not."""
     scene = load_scene("hertz-shear", ["friction.f=0.01", "effects.shear=true", "effects.normal=true"])

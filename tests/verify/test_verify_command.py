@@ -246,23 +246,3 @@ def test_a_finished_run_begins_anew(tmp_path):
     )
     assert known == [(0, True), (1, True)]  # its report stays until the new one is there
     assert len(first.splitlines()) == len((tmp_path / "ledger.jsonl").read_text("utf-8").splitlines()) == 1
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["--suite", "quick", "--count", "3"], "--count 3: only with --suite stress"),
-        (["--suite", "full", "--only", "near-slide"], "--only 'near-slide': no case of the suite full; did you mean"),
-        (["--suite", "stress", "--count", "0"], "--count 0: must be a whole number from 1 to 999999999"),
-        (["--suite", "stress", "--seed", "x"], "argument --seed: invalid int value: 'x'"),
-        (["--suite", "stress", "--method", "bem"], "--method 'bem': must be one of exact, march, fem"),
-        (["--suite", "stress", "--only", "one"], "--only 'one': must be the number of a random scene"),
-        (["--suite", "stress", "--seed=-1"], "--seed -1: must be a whole number from 0"),
-        (["--suite", "all"], "argument --suite"),
-        (["--processes", "0"], "--processes 0: must be >= 1"),
-        (["--include", "nowhere"], "--include nowhere: must be the folder of a study"),
-    ],
-)
-def test_what_it_refuses(arguments, said, tmp_path, refused):
-    assert refused("verify", *arguments, "--out", str(tmp_path / "none")).startswith(f"partialslip: {said}")
-    assert not (tmp_path / "none").exists()
