@@ -145,6 +145,53 @@ benchmark read '' mine.csv -o mine => PROBLEM '': must be one of PS-01
 benchmark read PS-01,PS-02 mine.csv -o mine => PROBLEM 'PS-01,PS-02': must be one of PS-01
 """,
 }  # fmt: skip
+# of hertz-shear, ~ being bodies.lower
+SETTINGS = """
+~={} => ~.width: missing
+~={width=1.0} => ~.height: missing
+~={width=0, height=1} => ~.width = 0: must be > 0
+~={width=1, height='1'} => ~.height = '1': must be a number, not a string
+~={BLOCK, colour=1} => ~.colour: unknown key; known are kind, width, height, holder, mesh
+~={kind='cylinder', BLOCK} => ~.kind = 'cylinder': must be one of 'block', 'pad'
+~={support='glued', BLOCK} => ~.support = 'glued': must be one of 'clamped', 'roller', 'sides', 'pivot'
+~={pulled=1, BLOCK} => ~.pulled = 1: must be true or false, not a whole number
+~={pulled=true, BLOCK} => ~.pulled = true: must have support 'roller' or 'sides', not 'clamped'
+~={holder={width=1}, BLOCK} => ~.holder.height: missing
+~={holder={width=1, height=1, x=1}, BLOCK} => ~.holder.x: unknown key; known are width, height
+~={holder=1, BLOCK} => ~.holder = 1: must be a table, not a whole number
+~={holder={width=1, height=1e-5}, BLOCK} => ~.holder.height = 1e-05: must be 0.0001 to 10000 times the width
+~={width=1, height=1e5} => ~.height = 100000.0: must be 0.0001 to 10000 times the width, 1
+~={unit=1e-3, BLOCK} => ~.unit = 0.001: must be given only together with mesh
+~={mesh=''} => ~.mesh = '': must be a name
+~={mesh=3} => ~.mesh = 3: must be a string, not a whole number
+~={mesh='a.msh', width=1} => ~.width: must not be given together with mesh
+~={mesh='a.msh', holder={width=1, height=1}} => ~.holder: must not be given together with mesh
+~={kind='pad', width=0.0901, height=0.1} => ~.width = 0.0901: must be <= 0.09
+~={kind='pad', width=0.08, height=0.02} => ~.height = 0.02: must be > 0.0222222 m, as the face recedes by 0.02 m
+bodies=3 => bodies = 3: must be a table, not a whole number
+bodies.middle=3 => bodies.middle: unknown key; known are upper, lower
+bodies.upper=3 => bodies.upper = 3: must be a table, not a whole number
+bodies.upper={pulled=true, support='sides', BLOCK} => bodies.upper.pulled = true: must be false
+bodies.upper={kind='pad', BLOCK} & ~={kind='pad', BLOCK} => ~.kind = 'pad': must be 'block'; bodies.upper is a pad
+friction={f=[0.6,0.4]} => friction.x: missing; must give the places of the numbers of friction.f
+friction={f=0.5,x=[0,1]} => friction.x: must be left out where friction.f is one number
+friction={f=[0.6,0.4],x=[1,1]} => friction.x[1] = 1.0: must be > friction.x[0] = 1.0
+friction={f=[0.6,0.4],x=[0,1,2]} => friction.x: must have as many numbers as friction.f, 2, not 3
+friction={f=[0.6,0],x=[0,1]} => friction.f[1] = 0: must be > 0.0
+friction={f=[0.6],x=[0,1]} => friction.f = [0.6]: must be an array of at least 2 numbers
+friction={f='x'} => friction.f = 'x': must be a number or an array, not a string
+friction={f=-1} => friction.f = -1: must be >= 0.0
+material={} => material.E: missing
+material={E=1e9} => material.nu: missing
+material={nu=0.3} => material.E: missing
+material={E=1e9,upper={E=2e11,nu=0.3},lower={E=1e11,nu=0.35}} => material.nu: missing
+material={upper={E=2e11,nu=0.3}} => material.lower: missing; or give E and nu in material, for the body without its own
+material={lower={E=2e11,nu=0.3}} => material.upper: missing; or give E and nu in material, for the body without its own
+material={upper={E=2e11,nu=0.3},lower={E=1e9}} => material.lower.nu: missing
+material={upper={E=2e11,nu=0.3},lower={E=-1,nu=0.3}} => material.lower.E = -1: must be > 0
+material={E='hard',nu=0.3} => material.E = 'hard': must be a number, not a string
+material={E=1e9,nu=0.5} => material.nu = 0.5: must be < 0.5
+"""
 ROWS = [(f"{first} {row}".partition(" => ")) for first, rows in REFUSED.items() for row in rows.strip("\n").split("\n")]
 
 
@@ -181,3 +228,10 @@ def test_commands(rejected, command, said):
 )
 def test_characters_that_no_shell_would_pass(rejected, arguments, said):
     assert said in rejected(None, arguments)
+
+
+@pytest.mark.parametrize("row", SETTINGS.strip().splitlines())
+def test_settings(rejected, row):
+    settings, _, said = row.replace("~", "bodies.lower").replace("BLOCK", "width=0.04, height=0.02").partition(" => ")
+    told = rejected(None, [*SHIPPED, *(word for each in settings.split(" & ") for word in ("--set", each))])
+    assert told.startswith(f"partialslip: hertz-shear: {said}")
