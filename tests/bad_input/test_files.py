@@ -9,7 +9,6 @@ import pytest
 from partialslip import load_scene, run
 
 FIXTURES = Path(__file__).parents[1] / "score"
-COARSE = ("--set", "fem.accuracy=0.1")
 FRD, DAT = (FIXTURES / f"calculix.{ending}" for ending in ("frd", "dat"))
 X = np.linspace(-1.1e-3, 1.1e-3, 23)
 P = 4e8 * np.sqrt(np.maximum(1 - (X / 1e-3) ** 2, 0))

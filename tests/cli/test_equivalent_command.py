@@ -99,9 +99,3 @@ def test_units_are_those_of_the_scene(call, folder):
     code, out, err = call("equivalent", "mm.toml", "--set", "load.displacement=[0,3e-3]", "--set", "load.Q=[0,0]")
     assert (code, out) == (2, "")
     assert err.startswith("partialslip: mm.toml: load.displacement = [0, 0.003] mm: must be load.Q here")
-
-
-@pytest.mark.usefixtures("done")
-def test_a_rig_of_other_bodies_is_one_line(refused):
-    said = refused("run", "referring.toml", "--set", "bodies.upper.height=9e-3", "--with", "equivalent")
-    assert "rig.json: this rig has other bodies, supports or materials than blocks" in said

@@ -77,16 +77,6 @@ def hertz(tmp_path_factory):
     return folder
 
 
-@pytest.mark.usefixtures("coarse")
-def test_files_without_a_scene(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["map"]) == 0
-    printed = capsys.readouterr()
-    assert printed.out == f"written: map.svg, ends.svg, map.csv in {Path('results', 'map')}\n"
-    assert printed.err == ""
-    assert names(tmp_path / "results" / "map") == FILES
-
-
 @pytest.mark.slow
 def test_table_against_one_zone_at_a_time(hertz):
     table = rows(hertz)
@@ -188,14 +178,6 @@ def test_labels_keep_apart(hertz):
     assert apart[~np.eye(len(places), dtype=bool)].min() > 12  # points; the text is 8 high
 
 
-def test_a_label_does_not_stand_beside_one_that_says_the_same(hertz):
-    svg = (hertz / "map.svg").read_text("utf-8")
-    found = re.findall(r"translate\(([\d.]+) ([\d.]+)\)[^>]*>([mn] [^<]+)<", svg)
-    for number, (x, y, text) in enumerate(found):
-        apart = [np.hypot(float(x) - float(u), float(y) - float(v)) for u, v, other in found[:number] if other == text]
-        assert min(apart, default=np.inf) > 30  # points
-
-
 @pytest.mark.slow
 def test_a_scene_on_the_map(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
@@ -238,14 +220,6 @@ def test_other_signs_are_mirrored():
 def test_finite_bodies_are_said_to_be_left_out():
     lines = place(stick_map(scene("bodies.lower={width=1, height=1}")))
     assert lines[-1] == "the map shows half-planes: bodies.lower left out"
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("coarse")
-def test_the_map_reaches_up_to_the_scene():
-    data = stick_map(scene("load.sigma=[-3e9, 3e9]"))
-    assert data.point.place[1] == pytest.approx(30)
-    assert data.grid.sf.max() == pytest.approx(36, abs=1)
 
 
 @pytest.mark.parametrize(
