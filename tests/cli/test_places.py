@@ -83,11 +83,6 @@ def test_the_folder_follows_from_the_request_in_any_order(tmp_path, monkeypatch)
         assert elsewhere == "settings: methods"
 
 
-def test_the_checksum_is_the_same_whatever_the_order_of_the_settings():
-    one, two = request(seed=1, methods=("exact",)), request(methods=["exact"], seed=1)
-    assert own(one) == own(two) != own(request(methods=["exact"], seed=2))
-
-
 def test_what_differs_from_the_plain_request_is_named():
     assert request(seed=1, methods=["fem"], count=None).changed == "settings: seed, methods"
     assert request(**dict.fromkeys("abcde", 1)).changed == "settings: a, b, c, 2 more"
