@@ -65,13 +65,14 @@ def test_a_sound_line_of_another_program_is_refused(tmp_path, value):
     assert path.read_bytes() == before
 
 
-def test_an_entry_torn_at_any_byte_is_dropped_and_no_other(tmp_path):
+@pytest.mark.parametrize("every", [pytest.param(1, marks=pytest.mark.slow), 17])
+def test_an_entry_torn_at_any_byte_is_dropped_and_no_other(tmp_path, every):
     path = tmp_path / "ledger.jsonl"
     Ledger(path).add("one", {"found": 1})
     first = path.read_bytes()
     Ledger(path).add("two", {"found": {"a": [1, 2]}})
     whole = path.read_bytes()
-    for count in range(len(whole)):
+    for count in {*range(0, len(whole), every), len(first) - 1, len(first), len(whole) - 1}:
         path.write_bytes(whole[:count])
         kept = [entry["key"] for entry in Ledger(path)]
         assert kept == (["one"] if count >= len(first) - 1 else []) + (["two"] if count == len(whole) - 1 else [])

@@ -139,9 +139,8 @@ def stop_and_rerun(stopped, folder, at, kind):
     assert whole(folder / "out") == (FILES, [])
 
 
-@pytest.mark.parametrize(
-    ("at", "cases", "kind"), [(25, 1, signal.SIGKILL), pytest.param(35, 2, signal.SIGINT, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("at", "cases", "kind"), [(25, 1, signal.SIGKILL), (35, 2, signal.SIGINT)])
 def test_a_verification_stopped_at_a_write_goes_on(stopped, tmp_path, at, cases, kind):
     """Before the second case is in the ledger, and while the PDF is written."""
     assert stopped(tmp_path, at, kind, VERIFY)[0] == (-signal.SIGKILL if kind == signal.SIGKILL else 130)

@@ -266,6 +266,7 @@ friction = { f = 0.3 }
 """
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 def test_units_are_a_setting_unless_they_are_the_scenes_own(capsys):
     """Files are written in them, and tables read in them."""
@@ -319,6 +320,7 @@ def test_scores_of_another_content_or_factor():
     assert len(folders()) == 3
 
 
+@pytest.mark.slow
 def test_a_folder_below_any_number_of_new_ones(capsys):
     deep = "/".join(["a"] * 1500)
     assert main([*EXACT, "--out", deep]) == 0

@@ -54,7 +54,7 @@ def test_closed_streams(tmp_path, closing, code):
     assert len(done.stderr.splitlines()) == (0 if closing.startswith("2") else 1)
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp932"])
+@pytest.mark.parametrize("encoding", ["ascii", pytest.param("cp932", marks=pytest.mark.slow)])
 def test_poor_encodings(tmp_path, encoding):
     """Every character is printed or escaped, and tables have ASCII rules."""
     title = "Größe ΔQ 接触"

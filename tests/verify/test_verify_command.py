@@ -187,7 +187,7 @@ def test_verdicts_are_kept_as_they_are_read_back(tmp_path):
     assert kept.cases == {"near-stuck-1e-9": tuple(verdicts)}
 
 
-@pytest.mark.parametrize("kind", ["killed", "interrupted"])
+@pytest.mark.parametrize("kind", ["killed", pytest.param("interrupted", marks=pytest.mark.slow)])
 def test_a_second_run_that_is_stopped_leaves_the_first(kind, tmp_path):
     """Ledger, verdicts and report of the finished run stay as they are; a third run goes on from the second."""
     settings = {"only": ["1", "2"], "method": "exact", "seed": 5, "processes": 1, "out": tmp_path}
