@@ -56,4 +56,3 @@ def result(method="fem", centre=0.0, half_width=C, a=1.0, regime="small tension"
 
 
 EXACT = result("exact", estimate={})
-scene = SCENE
