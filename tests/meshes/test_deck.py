@@ -1,5 +1,6 @@
 """Decks of Abaqus that meshio reads as another mesh in silence, or of which it leaves out a part."""
 
+import contextlib
 import re
 
 import meshio
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 from refusing import line_of
 
+from partialslip.tools.errors import InputError
 from partialslip_meshes import block, deck, read
 
 FIELD = "bodies.lower.mesh"
@@ -113,3 +115,19 @@ def test_a_second_part_that_is_not_seen(mesh, text, tmp_path, monkeypatch):
     monkeypatch.setattr(deck, "fault", lambda *_: "")
     back = read(FIELD, at(tmp_path, doubled(text)))
     assert np.ptp(back.points[:, 1]) == pytest.approx(1.05 * np.ptp(mesh.points[:, 1]), rel=1e-9)
+
+
+@pytest.mark.parametrize("lines", [
+    "*ELSET, ELSET=contact\n1, 2\n*ELEMENT, TYPE=T2D2\n9001, 1, 2\n",
+    "*ELSET, ELSET=a\n1, 2\n*ELSET, ELSET=contact\na\n*ELEMENT, TYPE=T2D2\n9001, 1, 2\n",
+    "*ELSET, ELSET=contact\n99999\n", "*ELSET, ELSET=contact\n", "*NSET, NSET=contact, GENERATE\n1, 5\n",
+    "*ELSET, ELSET=contact\nx\n", "*ELEMENT, TYPE=T2D2\n9001, 1\n", "*ELEMENT\n1, 2\n", "*NSET\n1\n",
+    "*NSET, NSET\n1\n",
+    "*ELEMENT, TYPE=T2D2, ELSET\n1, 2\n",
+])  # fmt: skip
+def test_sets_that_are_none_are_read_or_refused(text, tmp_path, lines):
+    """Elements before and after their sets, sets of sets, and damaged ones."""
+    place = text.index("*NSET, NSET=contact")
+    rest = text[text.index("*NSET", place + 1) :]
+    with contextlib.suppress(InputError):
+        read(FIELD, at(tmp_path, text[:place] + lines + rest))
