@@ -4,15 +4,14 @@ Each of these problems solves p and q on given cells, tells the errors of these 
 Scaled: lengths by the unit of the problem, forces by P, displacements by A P.
 """
 
-import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 import numpy as np
 
-from partialslip.friction.history import SHEARS, History
+from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
 from partialslip.friction.regime import doubts
 from partialslip.friction.restart import begun, end_state
@@ -26,6 +25,12 @@ from partialslip.scene import Scene
 from partialslip.tools.arrays import Array, Indices
 from partialslip.tools.bars import BARS
 
+# accuracy: growth of cells, mesh by mesh: sqrt(2), for :meth:`CellProblem.mesh_errors`. On the first mesh nothing is
+# known of the stick zone; out of phase the second one is to find it, too
+_GROWTHS = (0.28, 0.28, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 0.0175)
+MESHES = tuple((4e-3 * growth, growth) for growth in _GROWTHS)  # accuracy: (cell size at the ends, in a; growth)
+COARSE = 3  # accuracy: of these, before the first one whose errors are estimated
+_TIMES = 2.0  # accuracy: errors over changes (measured: benchmarks/estimates.py)
 _LEFT = 3.0  # cost: times the seconds of the next mesh that must be left: finite elements follow in the same run
 
 
@@ -90,15 +95,12 @@ class CellProblem(ABC, Generic[L]):
     """Bodies that are pressed together and sheared, on cells.
 
     ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``meshes`` are the
-    sizes of the cells at the ends of zones, in a, and their growth; on the first ``coarse`` ones ends are only found.
+    sizes of the cells at the ends of zones, in a, and their growth.
     ``telling`` are the keys of the errors that the line on a mesh tells. ``steps_count``: whether the errors of load
-    steps leave less to those of the cells. ``nearly``: excess of errors up to which the following mesh is halfway to
-    the next one of ``meshes``; the second number is for errors of q, q1 and q2 on later meshes.
+    steps leave less to those of the cells.
     """
 
-    coarse = 1
     steps_count = True
-    nearly = 0.0, 0.0
     telling: tuple[str, ...]
 
     def __init__(
@@ -108,11 +110,10 @@ class CellProblem(ABC, Generic[L]):
         clock: Clock,
         path: Path | None,
         frame: tuple[float, float],
-        meshes: Sequence[tuple[float, float]],
     ) -> None:
         self.scene, self.start, self.clock, self.path = scene, start, clock, path
         self.origin, self.length = frame
-        self.meshes = meshes
+        self.meshes = MESHES
 
     def places(self, level: L) -> Array:
         """Ends of the cells, m."""
@@ -127,8 +128,17 @@ class CellProblem(ABC, Generic[L]):
         """Solve on the ``mesh`` after that of the ``level``."""
 
     @abstractmethod
-    def mesh_errors(self, level: L, before: L) -> Errors:
-        """Errors due to the cells of the ``level``, of ends in a and of tractions relative L2."""
+    def changes(self, level: L, other: L) -> Errors:
+        """Changes from the ``other`` level to this one, of ends in a and of tractions relative L2."""
+
+    def mesh_errors(self, level: L, before: L, earlier: L) -> Errors:
+        """Errors due to the cells of the ``level``: twice the changes since the level ``before``, whose cells are
+        sqrt(2) times as large, and no less than the changes since the ``earlier`` one, whose cells are twice as large.
+
+        An error C h^s changes by 2^(s/2) - 1 and 2^s - 1 of what is left of it: by all of it at s = 2 and s = 1.
+        """
+        late, early = self.changes(level, before), self.changes(level, earlier)
+        return {key: max(_TIMES * late[key], early.get(key, 0.0)) for key in late}
 
     @abstractmethod
     def step_errors(self, level: L) -> Errors:
@@ -145,12 +155,6 @@ class CellProblem(ABC, Generic[L]):
         lost = stepped if self.steps_count else {}
         return {key: meshed[key] / max(most - lost.get(key, 0.0), most / 2) for key, most in allowed.items()}
 
-    def nears(self, excess: Errors, later: bool) -> bool:
-        """Whether errors exceed what is allowed by so little that a mesh halfway to the next one is likely to do;
-        ``later``: not on the first mesh whose errors are known."""
-        most, of_shear = self.nearly
-        return all(each <= (of_shear if later and key in SHEARS else most) for key, each in excess.items())
-
     @abstractmethod
     def answer(self, level: L) -> LastLevel:
         """What the result is made of."""
@@ -162,22 +166,21 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
     level."""
     level: L | None = None
     before: L | None = None
+    earlier: L | None = None
     clock, errors = problem.clock, Errors()
     shares: dict[str, Errors] = {}
     meshes, iterations, pace = 0, 0, Pace(clock)
-    place, last = 0.0, len(problem.meshes) - 1
     while True:
-        mesh = _mesh_at(problem.meshes, place)
+        mesh = problem.meshes[meshes]
         spent = bool(errors) and not pace.fits(_LEFT)
         if level and (spent or problem.too_large(level, len(problem.cells(level, mesh)))):
             break
-        before, level = level, problem.solve(level, mesh)
+        earlier, before, level = before, level, problem.solve(level, mesh)
         meshes += 1
         pace.took()
         iterations += level.history.iterations if level.history else 0
-        halfway = False
-        if before and meshes > problem.coarse:
-            meshed, stepped = problem.mesh_errors(level, before), problem.step_errors(level)
+        if before and earlier and meshes > COARSE:
+            meshed, stepped = problem.mesh_errors(level, before, earlier), problem.step_errors(level)
             shares = {"discretisation": meshed} | ({"steps": stepped} if stepped else {})
             errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
             known = max(errors[key] for key in problem.telling)
@@ -186,10 +189,8 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
             excess = problem.excess(meshed, stepped)
             if max(excess.values()) <= 1:
                 break
-            halfway = place % 1 == 0 and problem.nears(excess, meshes > problem.coarse + 1)
-        if place == last:
+        if meshes == len(problem.meshes):
             break
-        place = place + 0.5 if halfway else math.floor(place) + 1
     widths, places, scene = np.diff(level.vertices), problem.places(level), problem.scene
     lost, notes = begun(errors, level.history, widths, problem.start, lambda state: on_cells(state.p, places) / scene.P)
     if lost:
@@ -198,12 +199,6 @@ def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Res
     counts = {"meshes": meshes, "iterations": iterations}
     other = before.history if before and errors else None
     return _result(problem, level, other, errors, shares, counts, notes), level
-
-
-def _mesh_at(meshes: Sequence[tuple[float, float]], place: float) -> tuple[float, float]:
-    """Size and growth at a ``place`` in ``meshes``, between two of them their geometric mean."""
-    (size, growth), (finer, less) = meshes[math.floor(place)], meshes[math.ceil(place)]
-    return math.sqrt(size * finer), math.sqrt(growth * less)
 
 
 def _result(
