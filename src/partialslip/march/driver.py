@@ -4,9 +4,9 @@ Each of these problems solves p and q on given cells, tells the errors of these 
 Scaled: lengths by the unit of the problem, forces by P, displacements by A P.
 """
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -20,6 +20,7 @@ from partialslip.friction.work import work, work_error
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march.cells import off_cells, on_cells
 from partialslip.result import Clock, Pace, Result, Slip, SteadyState, Traction
+from partialslip.result.refining import Refinable, refine
 from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip.tools.arrays import Array, Indices
@@ -91,17 +92,38 @@ class LastLevel:
     notes: tuple[str, ...] = ()
 
 
-class CellProblem(ABC, Generic[L]):
+@dataclass(frozen=True)
+class Refined(Generic[L]):
+    """A ``level`` and the one ``before`` it, and its errors: those ``meshed`` are due to the cells, those ``stepped``
+    to the load steps."""
+
+    level: L
+    before: L | None
+    meshed: Errors = field(default_factory=Errors)
+    stepped: Errors = field(default_factory=Errors)
+
+    @property
+    def unknowns(self) -> str:
+        return f"{len(self.level.vertices) - 1:,} cells"
+
+    @property
+    def errors(self) -> Errors:
+        return {key: error + self.stepped.get(key, 0.0) for key, error in self.meshed.items()}
+
+    @property
+    def shares(self) -> dict[str, Errors]:
+        """Errors by what they are due to."""
+        return {name: each for name, each in (("discretisation", self.meshed), ("steps", self.stepped)) if each}
+
+
+class CellProblem(Refinable[Refined[L]]):
     """Bodies that are pressed together and sheared, on cells.
 
-    ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``meshes`` are the
-    sizes of the cells at the ends of zones, in a, and their growth.
-    ``telling`` are the keys of the errors that the line on a mesh tells. ``steps_count``: whether the errors of load
-    steps leave less to those of the cells.
+    ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``steps_count``:
+    whether the errors of load steps leave less to those of the cells.
     """
 
     steps_count = True
-    telling: tuple[str, ...]
 
     def __init__(
         self,
@@ -113,7 +135,7 @@ class CellProblem(ABC, Generic[L]):
     ) -> None:
         self.scene, self.start, self.clock, self.path = scene, start, clock, path
         self.origin, self.length = frame
-        self.meshes = MESHES
+        self.iterations = 0
 
     def places(self, level: L) -> Array:
         """Ends of the cells, m."""
@@ -148,12 +170,29 @@ class CellProblem(ABC, Generic[L]):
         """Whether a mesh with ``count`` ends of cells after that of the ``level`` is out of proportion."""
         return False
 
-    def excess(self, meshed: Errors, stepped: Errors) -> Errors:
-        """Errors ``meshed`` over what is allowed: at most 1 if finer cells are not needed, or of no use: they do not
-        reduce the error of load steps."""
-        allowed = {key: BARS[key] * self.scene.fem.accuracy for key in meshed}
-        lost = stepped if self.steps_count else {}
-        return {key: meshed[key] / max(most - lost.get(key, 0.0), most / 2) for key, most in allowed.items()}
+    def refined(self, before: Refined[L] | None) -> Refined[L]:
+        last, earlier = (before.level, before.before) if before else (None, None)
+        level = self.solve(last, MESHES[self.meshes])
+        self.meshes += 1
+        self.iterations += level.history.iterations if level.history else 0
+        if not last or not earlier or self.meshes <= COARSE:
+            return Refined(level, last)
+        return Refined(level, last, self.mesh_errors(level, last, earlier), self.step_errors(level))
+
+    def finished(self, found: Refined[L]) -> bool:
+        if self.meshes == len(MESHES) or (found.errors and max(self._excess(found).values()) <= 1):
+            return True
+        return self.too_large(found.level, len(self.cells(found.level, MESHES[self.meshes])))
+
+    def fits(self, pace: Pace, found: Refined[L]) -> bool:
+        return not found.errors or pace.fits(_LEFT)
+
+    def _excess(self, found: Refined[L]) -> Errors:
+        """Errors due to the cells over what is allowed: at most 1 if finer cells are not needed, or of no use: they do
+        not reduce the error of load steps."""
+        allowed = {key: BARS[key] * self.scene.fem.accuracy for key in found.meshed}
+        lost = found.stepped if self.steps_count else {}
+        return {key: found.meshed[key] / max(most - lost.get(key, 0.0), most / 2) for key, most in allowed.items()}
 
     @abstractmethod
     def answer(self, level: L) -> LastLevel:
@@ -162,65 +201,29 @@ class CellProblem(ABC, Generic[L]):
 
 def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Result, L]:
     """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the next
-    mesh does not fit the allowance of its clock; errors are estimated in any case. Returns the result, and the last
-    level."""
-    level: L | None = None
-    before: L | None = None
-    earlier: L | None = None
-    clock, errors = problem.clock, Errors()
-    shares: dict[str, Errors] = {}
-    meshes, iterations, pace = 0, 0, Pace(clock)
-    while True:
-        mesh = problem.meshes[meshes]
-        spent = bool(errors) and not pace.fits(_LEFT)
-        if level and (spent or problem.too_large(level, len(problem.cells(level, mesh)))):
-            break
-        earlier, before, level = before, level, problem.solve(level, mesh)
-        meshes += 1
-        pace.took()
-        iterations += level.history.iterations if level.history else 0
-        if before and earlier and meshes > COARSE:
-            meshed, stepped = problem.mesh_errors(level, before, earlier), problem.step_errors(level)
-            shares = {"discretisation": meshed} | ({"steps": stepped} if stepped else {})
-            errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
-            known = max(errors[key] for key in problem.telling)
-            cells = f"{len(level.vertices) - 1:,} cells"
-            progress(f"mesh {meshes}: {cells}, {', '.join(problem.telling)} known to {known:.1e} a")
-            excess = problem.excess(meshed, stepped)
-            if max(excess.values()) <= 1:
-                break
-        if meshes == len(problem.meshes):
-            break
-    widths, places, scene = np.diff(level.vertices), problem.places(level), problem.scene
-    lost, notes = begun(errors, level.history, widths, problem.start, lambda state: on_cells(state.p, places) / scene.P)
+    mesh does not fit the allowance of its clock; errors are estimated in any case. Returns the result, and the
+    level that it is of."""
+    found = refine(problem, progress)
+    return _result(problem, found), found.level
+
+
+def _result(problem: CellProblem[L], found: Refined[L]) -> Result:
+    scene, level, errors, shares = problem.scene, found.level, found.errors, found.shares
+    history, answer, places = level.history, problem.answer(level), problem.places(level)
+    accuracy, traction, widths = scene.fem.accuracy, answer.traction, np.diff(level.vertices)
+    lost, notes = begun(errors, history, widths, problem.start, lambda state: on_cells(state.p, places) / scene.P)
     if lost:
         shares["start"] = lost
         errors = {key: error + lost.get(key, 0.0) for key, error in errors.items()}
-    counts = {"meshes": meshes, "iterations": iterations}
-    other = before.history if before and errors else None
-    return _result(problem, level, other, errors, shares, counts, notes), level
-
-
-def _result(
-    problem: CellProblem[L],
-    level: L,
-    other: History | None,
-    errors: Errors,
-    shares: Mapping[str, Errors],
-    counts: Mapping[str, int],
-    notes: tuple[str, ...],
-) -> Result:
-    scene, history, answer = problem.scene, level.history, problem.answer(level)
-    accuracy, traction = scene.fem.accuracy, answer.traction
     if answer.found.centre is None:
         errors = {key: error for key, error in errors.items() if key not in ("m", "n")}
-    found = answer.found.placed(problem.origin, problem.length)
+    zones = answer.found.placed(problem.origin, problem.length)
     unit = scene.material.A * scene.P  # of displacement
     state = slip = None
     if history:
-        places = problem.places(level)
         p, q = (off_cells(scene.P * forces, places) for forces in (answer.pressed, history.end[0]))
-        state = end_state(scene, p, q, errors, history, np.diff(level.vertices))
+        state = end_state(scene, p, q, errors, history, widths)
+        other = found.before.history if found.before and errors else None
         off, energy = work_error(history, other, errors), unit * scene.P
         slip = Slip(
             traction.x,
@@ -229,24 +232,25 @@ def _result(
             None if off is None else off * energy,
         )
     return replace(
-        Result.of("march", found, answer.a, answer.p0, traction, problem.clock),
+        Result.of("march", zones, answer.a, answer.p0, traction, problem.clock),
         state=state,
         slip=slip,
         settings={"model": answer.model, "accuracy": accuracy},
         counts={
-            "cells": len(level.vertices) - 1,
-            "tangential_unknowns": len(level.vertices) - 1 if history else 0,
+            "cells": len(widths),
+            "tangential_unknowns": len(widths) if history else 0,
             "cycles": history.cycles if history else 0,
             "load_steps": history.load_steps if history else 0,
             "steps": history.path.most_steps if history else 0,
             "opposing_nodes": history.opposing if history else 0,
-            **counts,
+            "meshes": problem.meshes,
+            "iterations": problem.iterations,
             **answer.counts,
         },
         certificate=answer.certificate,
         last_cycle_change=answer.change,
         estimate=errors,
         shares=shares,
-        notes=found.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),
+        notes=zones.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),
         contact_ends=answer.contact_ends,
     )

@@ -56,14 +56,13 @@ class SimilarLevel(driver.Level):
     """Solution on one mesh of cells; lengths in half-widths of the frame (:class:`NormalLoads`) from its middle, forces
     in P.
     ``pressed`` are the normal forces, ``kinks`` are those of q at the load points; ``stepped`` are errors due to the
-    load steps, from the mesh on which these were chosen last. ``number``: of the mesh, from 0.
+    load steps, from the mesh on which these were chosen last.
     ``trail``: where load steps on the next mesh begin.
     """
 
     pressed: Array
     kinks: tuple[float, ...] = ()
     stepped: Errors = field(default_factory=dict)
-    number: int = 0
     trail: Trail | None = None
 
     @property
@@ -83,8 +82,6 @@ class SimilarLevel(driver.Level):
 class SimilarBodies(driver.CellProblem[SimilarLevel]):
     """Half-planes of like materials, for :func:`partialslip.march.driver.march`; ``added`` as for
     :func:`partialslip.march.method.solve`."""
-
-    telling = ("m", "n")
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock, added: Added | None) -> None:
         self.added, self.normal, path = added, NormalLoads.of(scene), load_path(scene, plan, start)
@@ -107,8 +104,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
     def solve(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> SimilarLevel:
         # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a
         # moving stick zone: where steps matter, each later mesh halves them once and estimates their errors anew
-        number, stepped = (level.number + 1, level.stepped) if level else (0, Errors())
-        first = number == driver.COARSE
+        stepped, first = level.stepped if level else Errors(), self.meshes == driver.COARSE
         choose = first or (steps_matter(stepped, self.scene.fem.accuracy) and not self.clock.limited)
         cells = self.cells(level, mesh)
         found = _solve_level(
@@ -116,7 +112,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         )
         if first and found.history:
             self.path = found.history.path
-        return replace(found, stepped=found.stepped or stepped, number=number)
+        return replace(found, stepped=found.stepped or stepped)
 
     def changes(self, level: SimilarLevel, other: SimilarLevel) -> Errors:
         assert level.history

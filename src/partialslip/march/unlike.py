@@ -86,7 +86,6 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
     the flat ``punch`` as which the contact grows under an even ``gap``, if it is one. ``followed`` are the errors of
     the load steps, on the first cells that are not coarse. There as many steps are taken as these errors call for."""
 
-    telling = ("a",)
     steps_count = False  # they are as many as their errors call for
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock) -> None:
@@ -103,7 +102,7 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
 
     def solve(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
         found = self._enclosed(level, mesh)
-        if level and not self.followed and self.path and self.path.moves and self.beta:
+        if self.meshes >= driver.COARSE and not self.followed and self.path and self.path.moves and self.beta:
             return self._in_enough_steps(found)
         return found
 
