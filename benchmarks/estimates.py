@@ -294,7 +294,9 @@ def true_errors(scene: Scene, kind: str, group: str, found: Result) -> dict[str,
     if truth and truth.traction.values.levels and found.traction.values.levels:
         levels = norm_errors(found.traction, truth.traction, scene.friction.f, ("q1", "q2"))
         errors |= {
-            key: off for key, off in levels.items() if truth.estimate.get(key, 0.0) <= KNOWN * found.estimate.get(key, 0.0)
+            key: off
+            for key, off in levels.items()
+            if truth.estimate.get(key, 0.0) <= KNOWN * found.estimate.get(key, 0.0)
         }
     errors = {key: error for key, error in errors.items() if error is not None}
     if group in RANDOM and not {"m", "q", "q1"} <= errors.keys():
