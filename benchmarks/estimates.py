@@ -279,7 +279,7 @@ def loads(random: np.random.Generator, kind: str, shape: Any) -> tuple[Array, Ar
 
 def true_errors(scene: Scene, kind: str, group: str, found: Result) -> dict[str, float]:
     """Errors by key, without those that nothing is known of."""
-    if group in (*UNLIKE, "finite"):
+    if group in (*UNLIKE, "finite", "phase"):
         return against(scene, found, finest(scene, group))
     exact = partialslip.run(scene, ["exact"]).results["exact"]
     compared = compare(found, exact, scene, None)
