@@ -114,7 +114,7 @@ class Part:
     @property
     def held(self) -> HeldSides:
         """Lines of the mesh that are held along x, and along y."""
-        return _held(self.support, self.pulled and not self.gripped) if self.finite else (ALL_AROUND, ALL_AROUND)
+        return _held_lines(self.support, self.pulled and not self.gripped) if self.finite else (ALL_AROUND, ALL_AROUND)
 
     @cached_property
     def exponents(self) -> dict[Corner, float]:
@@ -382,7 +382,7 @@ def rescaled(polynomials: PPoly, value: float, length: float, origin: float = 0.
     return PPoly(polynomials.c * value / length**powers, polynomials.x * length + origin)
 
 
-def _held(support: Support, pulled: bool) -> HeldSides:
+def _held_lines(support: Support, pulled: bool) -> HeldSides:
     """Lines of a finite body that its ``support`` holds along x, and along y; not the right side, if it is ``pulled``
     by a traction."""
     along_x, along_y = ([line for line in lines if line != "right" or not pulled] for lines in _HELD[support])
@@ -397,7 +397,7 @@ def _finite(plain: Part, body: Body | None, scene: Scene, L: float) -> Part:
     face = PadFace(scene.profile, L) if body.kind == "pad" else None
     part = replace(plain, face=face, support=body.support, pulled=body.pulled, gripped=body.gripped)
     if body.mesh is not None:
-        needed = {*itertools.chain(*_held(body.support, False))} | ({"right"} if body.pulled else set())
+        needed = {*itertools.chain(*_held_lines(body.support, False))} | ({"right"} if body.pulled else set())
         field = f"bodies.{part.name}.mesh"
         unit = (body.unit or 1.0) / L
         groups = body.groups.given if body.groups else {}

@@ -231,7 +231,7 @@ def request(
         return shown(key, value, units)
 
     def data(of: "Scene | None", settings: Mapping[str, object]) -> dict[str, Any]:
-        return {"command": command, "scene": _content(of, constants), "settings": _plain(settings)}
+        return {"command": command, "scene": _content(of, constants), "settings": _given_settings(settings)}
 
     given = {key: value for key, value in vars(options).items() if key not in _NEUTRAL}
     asked = data(scene, {**given, **known})
@@ -257,7 +257,7 @@ def _content(scene: "Scene | None", constants: bool) -> dict[str, Any]:
     return {key: value for key, value in scene_content(scene).items() if key != "title"} | more
 
 
-def _plain(settings: Mapping[str, object]) -> dict[str, object]:
+def _given_settings(settings: Mapping[str, object]) -> dict[str, object]:
     """Return ``settings`` that are given, as plain data."""
     from partialslip.tools.output.place import content
 

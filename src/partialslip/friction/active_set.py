@@ -291,7 +291,7 @@ class _BlockPivoting:
             if line.slope <= 0:
                 return shift
             shift = (total - line.total) / line.slope
-            _, _, wanted = self._at(shift)
+            _, _, wanted = self._solution_and_sides(shift)
             wrong = int(np.count_nonzero(wanted != self._side))
             if wrong < fewest:
                 fewest, chances = wrong, _CHANCES
@@ -320,7 +320,7 @@ class _BlockPivoting:
         """Minimiser x (n,) at the ``shift``, r = C x - g - shift (n,), and the derivative of sum(x) by the shift."""
         fewest, chances = len(self._g) + 1, _CHANCES
         while True:
-            x, r, wanted = self._at(shift)
+            x, r, wanted = self._solution_and_sides(shift)
             wrong = np.flatnonzero(wanted != self._side)
             if len(wrong) == 0:
                 return x, r, self._solutions().slope
@@ -368,7 +368,7 @@ class _BlockPivoting:
             sides = self._wanted(at, r, shift)
             self._change(sides)
             slope = self._solutions().slope
-            x, new, wanted = self._at(shift)
+            x, new, wanted = self._solution_and_sides(shift)
             if np.array_equal(wanted, sides):
                 return x, new, slope
             free, way = sides == 0, x - at
@@ -405,7 +405,7 @@ class _BlockPivoting:
             self._side, self._line, self._tried = sides, None, None
             self.changes += 1
 
-    def _at(self, shift: float) -> tuple[Array, Array, Sides]:
+    def _solution_and_sides(self, shift: float) -> tuple[Array, Array, Sides]:
         """x of the present sides at the ``shift``, r, and the sides that they require."""
         if self._tried is None or self._tried[0] != shift:
             x, r = self._solutions().at(shift)

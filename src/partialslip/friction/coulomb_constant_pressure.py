@@ -107,7 +107,7 @@ class _Contact(Legs):
         if not change.any():
             return done(resting(start))
         if not self._followed:
-            found = self._one_step(start, float(load[0]), change, self._known)
+            found = self._one_step(start, float(load[0]), change, self._starting_sides)
             if self._path.tension_stays or (
                 self._suffices(start, change, found) and self._agrees(start, load, change, found)
             ):
@@ -126,7 +126,7 @@ class _Contact(Legs):
         return len(self.legs) > self._cycle and self.legs[-self._cycle].leg is not None
 
     @property
-    def _known(self) -> Sides | None:
+    def _starting_sides(self) -> Sides | None:
         """Where the search for the sides after the next leg begins: at those of the previous cycle, or at those after
         the leg before turned round."""
         if not self.legs:

@@ -166,7 +166,7 @@ class LoadStep:
         free = (self.kept - self.xy @ pressed.x)[on]
         if self.pivot:
             free = free + pressed.turn * self.pivot.height
-        sheared = self._held(submatrix(self.xx, on, on), free, bound, q.sides[on]).spread(on, n)
+        sheared = self._tangential_forces(submatrix(self.xx, on, on), free, bound, q.sides[on]).spread(on, n)
         moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
         left = np.abs(moved - moved[on].mean()) / np.diag(self.yy)
         if self.pivot:
@@ -174,7 +174,7 @@ class LoadStep:
             pressed = replace(pressed, imbalance=max(pressed.imbalance, off))
         return replace(pressed, residual=left), replace(sheared, turn=pressed.turn)
 
-    def _held(self, C: Array, free: Array, bound: Array, sides: Sides) -> Solution:
+    def _tangential_forces(self, C: Array, free: Array, bound: Array, sides: Sides) -> Solution:
         """Tangential forces of the nodes that touch, for given normal ones. The end of an actuator is one more node,
         which always sticks, and bears what the others do."""
         if self.actuator is None:
@@ -197,7 +197,7 @@ class LoadStep:
                 return None
             solver = solver or self._solver(touch, slip)
             found = self._linear_solve(solver, touch, slip, refined, found)
-            opening, rest = self._off(found, (0, 0) if refined else longest(touch & (slip == 0)))
+            opening, rest = self._gap_and_slip(found, (0, 0) if refined else longest(touch & (slip == 0)))
             scale, (p_new, q_new, _) = self._scale(found), found
             noise = _ROUNDING * scale
             pushed = p_new - opening / np.diag(self.yy)
@@ -238,7 +238,7 @@ class LoadStep:
         found = found or solve(self._load, totals)
         if not refined:
             return found
-        opening, rest = self._off(found)
+        opening, rest = self._gap_and_slip(found)
         sticks = touch & (slip == 0)
         left = -np.stack([np.where(touch, opening, 0.0), np.where(sticks, rest, 0.0)])
         change = solve(left, totals - self._borne(found))
@@ -255,7 +255,7 @@ class LoadStep:
             ]
         )
 
-    def _off(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
+    def _gap_and_slip(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
         """Opening of the gap, and slip, under the forces, (2, n). Nodes from the first up to the second of ``but``,
         which are known to touch and to stick, are left out."""
         p, q, (approach, shift, *_) = found

@@ -175,10 +175,10 @@ class History:
     @property
     def repeats(self) -> bool:
         """Whether q changed over the last cycle by less than ``STEADY`` times the change over half a cycle."""
-        return bool(self._moved.max() <= STEADY * np.abs(self.change).max())
+        return bool(self._cycle_change.max() <= STEADY * np.abs(self.change).max())
 
     @property
-    def _moved(self) -> Array:
+    def _cycle_change(self) -> Array:
         """Change of the forces over the last cycle, (n,), without sign."""
         return np.abs(self.points[-1].x - self.points[-1 - len(self.path.cycle)].x)
 

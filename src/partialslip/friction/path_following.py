@@ -235,7 +235,7 @@ class _Leg:
             while True:
                 self._settle()
                 if self._tableau.pivots - self._checked >= _CHECKED:
-                    self._check()
+                    self._refresh_tableau()
                 node, way, step = self._next(end)
                 rate = self._rate()
                 while wanted and wanted[0] <= self._at + step:
@@ -271,7 +271,7 @@ class _Leg:
             if self._sides[node] == 0:
                 self._change(node)
         self._along = self._sides * self._slope
-        self._solve()
+        self._set_rates()
 
     def _beside(self, node: int, was: Mask) -> int:
         """Bound on which nodes slip beside the ``node`` that touches; 0 if they stick. Open nodes ``was`` (n,)."""
@@ -285,7 +285,7 @@ class _Leg:
 
     def _result(self, states: Sequence[tuple[Array, float]], events: int) -> Leg:
         self._refine()
-        off = np.abs(self._off()) / self._diagonal
+        off = np.abs(self._displacement_errors()) / self._diagonal
         change = self._forces - self._start
         return Leg(
             forces=self._forces,
@@ -311,7 +311,7 @@ class _Leg:
         """Correct the rounding errors that the events have added up, by a product with C, if they are ``least`` of the
         bounds or more; errors that are more than rounding are left to be seen. Nodes that stick at their bounds, and
         would get beyond them, slip a little instead: a force that is cut off at its bound is an error at all others."""
-        tableau, sticks, off = self._tableau, self._tableau.sticks, self._off()
+        tableau, sticks, off = self._tableau, self._tableau.sticks, self._displacement_errors()
         whole = float(self._bound.sum())
         if not least * whole <= float((np.abs(off) / self._diagonal).max()) <= _SEEN * whole:
             return
@@ -337,7 +337,7 @@ class _Leg:
         self._path = np.maximum(self._path, np.abs(self._slip))
         self._shift += float(p[-1])
 
-    def _off(self) -> Array:
+    def _displacement_errors(self) -> Array:
         """Errors of the displacements (n,): the way from the beginning, by a product with C, less what is added up."""
         return self._C @ (self._forces - self._start) - self._at * self._g - self._shift - self._rest
 
@@ -348,15 +348,15 @@ class _Leg:
         if slipping.any():
             if not (free[slipping].all() and slipping[self._open].all()):
                 tableau.restart(np.flatnonzero(self._open | (slipping & free)))
-            self._solve()
+            self._set_rates()
             wrong = np.count_nonzero(self._room() < -self._tolerance())
             if 2 * wrong <= np.count_nonzero(~(tableau.sticks | self._open)):
                 return
         if slipping.any() or self._open.any():
             tableau.restart(np.flatnonzero(self._open))
-        self._solve()
+        self._set_rates()
 
-    def _solve(self) -> None:
+    def _set_rates(self) -> None:
         self._p = self._tableau.solve(self._g, self._Q, self._along)
         self._noise = noise(self._rate(), self._g, float(self._p[-1]), self._diagonal)
 
@@ -435,7 +435,7 @@ class _Leg:
                 "without an end; the compliance is ill-conditioned"
             )
 
-    def _check(self) -> None:
+    def _refresh_tableau(self) -> None:
         """Set the tableau up anew if a product with C shows errors of its rates, and correct what the events have added
         up before it is too much to be rounding: the smaller the elements, the more it is."""
         rate, tableau = self._rate(), self._tableau
@@ -443,7 +443,7 @@ class _Leg:
         off = np.abs(self._C @ rate - self._g - self._p[-1] - rest) / self._diagonal
         if (off > np.maximum(_DRIFT * float(np.abs(rate).sum()), self._noise)).any():
             tableau.restart(np.flatnonzero(~tableau.sticks))
-            self._solve()
+            self._set_rates()
             self._settle()
         self._refine(_ADDED)
         self._checked = tableau.pivots

@@ -128,7 +128,9 @@ def read_stick_zone(
         if not 0 <= beyond < len(x):
             continue
         if moved[side]:
-            ends[side], unsure = _moved(x, changed, inside, ends[side], caught[side], fits[side], bool(still[beyond]))
+            ends[side], unsure = _outward_end(
+                x, changed, inside, ends[side], caught[side], fits[side], bool(still[beyond])
+            )
             strips[side] = max(strips[side], unsure)
             continue
         count = _slipped(changed, inside)
@@ -143,7 +145,7 @@ def read_stick_zone(
     return StickInterval(left, max(right, left), signs, moved, caught, (strips[0], strips[1]), fits)
 
 
-def _moved(
+def _outward_end(
     x: Array, changed: Array, inside: Indices, read: float, caught: float, fit: float, hidden: bool
 ) -> tuple[float, float]:
     """An end of the stick zone that has moved outwards, and what is not known of it: the end that the room tells,

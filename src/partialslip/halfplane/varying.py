@@ -128,13 +128,13 @@ class Cycle:
         def between(stages: list[PressureStage], before: Array) -> list[tuple[Array, Array]]:
             return [(f * now.pressure(x), before + change.within(mean, f, x)) for now, mean, change in stages]
 
-        forth, back = self._stages
+        forth, back = self._stages_between
         ways = [first, *between(forth, 0 * x), second], [second, *between(back, dq), first]
         rooms = [[_least(np.array([bound + sign * moved for bound, moved in way])) for way in ways] for sign in (1, -1)]
         return np.array([[-1.0], [1.0]]) * np.min(rooms, axis=1)
 
     @functools.cached_property
-    def _stages(self) -> tuple[list[PressureStage], list[PressureStage]]:
+    def _stages_between(self) -> tuple[list[PressureStage], list[PressureStage]]:
         """Stages between the load points, from 1 to 2 and back; none where there is no slip or slip reverses."""
         if not self.change or self.turns_round:
             return [], []

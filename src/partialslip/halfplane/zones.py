@@ -76,7 +76,7 @@ def stick_zone(
         turned[:] = False
     parts = turned.ndim == 0 or not contact.friction_bound.convex
     for index in map(tuple, np.argwhere(turned)):
-        known, mirror = _solved(contact, [float(load[index]) for load in loads], parts)
+        known, mirror = _zone_and_mirror(contact, [float(load[index]) for load in loads], parts)
         if turned.ndim == 0 and np.isnan(known.half_width):
             raise InputError(
                 f"dQ = {dQ_}, dsigma = {dsigma_}: slip turns round on the way, and the zone of gradual loads is not "
@@ -87,7 +87,7 @@ def stick_zone(
     return StickZone(centre[()], half_width[()], s[()])
 
 
-def _solved(contact: Contact, loads: list[float], parts: bool) -> tuple[StickZone[float], int]:
+def _zone_and_mirror(contact: Contact, loads: list[float], parts: bool) -> tuple[StickZone[float], int]:
     """The stick zone under ``loads``, for positive changes, and -1 if x is mirrored; NaN if it is not known, or,
     without ``parts``, if a zone inside slips."""
     try:

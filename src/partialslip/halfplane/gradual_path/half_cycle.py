@@ -227,7 +227,7 @@ def steady(loads: Loads, shape: Shape, parts: bool = True) -> HalfCycle:
     return _repeated(found, parts=True) if parts else found
 
 
-def _moved(one: Tractions, other: Tractions) -> float:
+def _state_distance(one: Tractions, other: Tractions) -> float:
     """How far two states are apart: the outer ends of their stick zones, or q between these, in a part of f p0 that
     counts as much."""
     ends = np.array([[each.parts[0].high, each.parts[-1].low] for each in (one, other)])
@@ -263,7 +263,7 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
             continue
         state, after = -found.settled, found.last.zone.centre
         change = after - middle
-        size = max(abs(change), _moved(begin, state)) if found.parted else abs(change)
+        size = max(abs(change), _state_distance(begin, state)) if found.parted else abs(change)
         settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
         rounding = least < min(size, _NEAR) and (size < _NEAR or number - nearest >= _NO_LESS)
         if size < settled or rounding:

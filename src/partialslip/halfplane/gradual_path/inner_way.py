@@ -146,7 +146,7 @@ class Way(Seen):
             if turn is not None:
                 if turn > 1e-3:
                     part = panel.length * float(panel.by.share(np.array(turn)))
-                    panel = self._solve(begin, takes, part, speeds, SINE, None, panel.cut(part, SINE))
+                    panel = self._converged_panel(begin, takes, part, speeds, SINE, None, panel.cut(part, SINE))
                     if not panel or panel.tail > _TAIL:
                         length, refused, self._refused = part / 2, refused + 1, len(self.panels)
                         if not length >= _SHORTEST or refused > _REFUSED:
@@ -188,7 +188,7 @@ class Way(Seen):
             elif event and not isinstance(event[0], str):
                 breaks = self._breaks_of(event[0], takes)
                 event = (event[0], float(breaks[np.argmin(np.abs(breaks - event[1]))])) if len(breaks) else None
-            panel = self._solve(begin, takes, length, speeds, old.by, event, self._alike(length, old.by))
+            panel = self._converged_panel(begin, takes, length, speeds, old.by, event, self._alike(length, old.by))
             if panel and self.progress + panel.length <= 1 and not self._crossing(panel) and panel.tail <= _TAIL:
                 return panel
         self._missed = len(self.panels)
@@ -215,22 +215,24 @@ class Way(Seen):
         if self._refused == len(self.panels):
             pass
         elif passing and passing[0] < 1.2 * length:
-            panel = self._solve(begin, takes, passing[0], speeds, SINE, passing[1:])
+            panel = self._converged_panel(begin, takes, passing[0], speeds, SINE, passing[1:])
         elif self.panels and fall * length > 0.3 * width and not shut * width > fall * gap:
-            panel = self._solve(begin, takes, 0.4 * width / fall, speeds, DECAY, ("width", width * np.exp(-RATE)))
+            panel = self._converged_panel(
+                begin, takes, 0.4 * width / fall, speeds, DECAY, ("width", width * np.exp(-RATE))
+            )
         elif self.panels and takes and shut * length > 0.5 * gap:
             size = self._least + max(SHUT / 2, _PART * gap)
-            panel = self._solve(begin, takes, gap / shut, speeds, SINE, ("gap", size))
+            panel = self._converged_panel(begin, takes, gap / shut, speeds, SINE, ("gap", size))
         if not panel or panel.length > rest or panel.tail > _TAIL:
             self._refused = len(self.panels)
-            panel = self._solve(begin, takes, length, speeds, SINE)
+            panel = self._converged_panel(begin, takes, length, speeds, SINE)
         for _ in range(_HALVINGS):
             crossing = self._crossing(panel) if panel else None
             if not panel or not crossing:
                 return panel
             end, place, s = crossing
             part = panel.length * float(panel.by.share(np.array(s)))
-            panel = self._solve(begin, takes, part, speeds, SINE, (end, place), panel.cut(part, SINE))
+            panel = self._converged_panel(begin, takes, part, speeds, SINE, (end, place), panel.cut(part, SINE))
         return None
 
     def _first_speeds(self) -> tuple[bool, float, Array]:
@@ -369,7 +371,7 @@ class Way(Seen):
                 found[B, column] = found[Z, column] = by[end] / (1 - by[B])
         return found
 
-    def _solve(
+    def _converged_panel(
         self,
         begin: Array,
         takes: bool,

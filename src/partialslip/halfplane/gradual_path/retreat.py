@@ -135,7 +135,7 @@ class Retreat:
             to_left = step(left, (more - pull) / c, at.left, at.right)
             if not (math.isfinite(to_left) and math.isfinite(to_right)):
                 return None
-            left, right = _moved(left, right, to_left, to_right, self.within)
+            left, right = _stepped_ends(left, right, to_left, to_right, self.within)
             at_break = step == self._past_breaks and number > _USUAL and max(abs(more), abs(pull)) < _ROUNDING
             if right - left <= 0 or max(abs(to_left), abs(to_right)) < _CLOSE or at_break:
                 break
@@ -260,7 +260,7 @@ def _tangent(gap: float, c: float) -> float:
     return math.sqrt(gap / (gap + 2 * c))
 
 
-def _moved(left: float, right: float, to_left: float, to_right: float, within: Zone) -> tuple[float, float]:
+def _stepped_ends(left: float, right: float, to_left: float, to_right: float, within: Zone) -> tuple[float, float]:
     """Ends after a step, kept within a zone and apart."""
     gone, lost = left - within.left, within.right - right  # widths of new slip: each changes by a limited factor
     to_left = min(max(to_left, -_FARTHEST * gone), _MOST * gone)

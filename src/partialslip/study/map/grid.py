@@ -142,7 +142,7 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
         given = scene.load.shown("P", scene.units)
         raise InputError(f"load.P = {given}: must be one number for a map over dQ and dsigma")
     pressed = contact(scene)
-    point, missing = _point(scene, pressed)
+    point, missing = _map_point(scene, pressed)
     top = max(_TOP, math.ceil(1.2 * point.place[1])) if point else _TOP
     data = _mapped(pressed.shape, top, progress)
     return replace(data, scene=scene, pressed=pressed, point=point, missing=missing)
@@ -199,7 +199,7 @@ def _lines_of(shape: Shape, fine: LoadedZones | None = None) -> tuple[list[MapLi
     """Return the lines of equal m and of equal n."""
     m_lines = [line for m in M_LEVELS for line in _m_lines(m, shape)]
     n_lines = [_n_line(n, shape) for n in N_LEVELS]
-    return _lines(m_lines, "m", shape, fine), _lines(n_lines, "n", shape, fine)
+    return _gradual_lines(m_lines, "m", shape, fine), _gradual_lines(n_lines, "n", shape, fine)
 
 
 @functools.cache
@@ -209,7 +209,7 @@ def _hertz_lines() -> tuple[list[MapLine], list[MapLine]]:
     return _lines_of(HertzShape(), _zones(Qf, sf, HertzShape()))
 
 
-def _lines(once: list[MapLine], of: str, shape: Shape, fine: LoadedZones | None) -> list[MapLine]:
+def _gradual_lines(once: list[MapLine], of: str, shape: Shape, fine: LoadedZones | None) -> list[MapLine]:
     """Return lines of equal m or n under gradual loads: the lines of a single step, ``once``, and in place of their
     parts where the table of gradual zones has others, lines through the ``fine`` grid of gradual zones, if any."""
     if fine is None:
@@ -288,7 +288,7 @@ def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None]
     return LoadedZones(Qf, sf, zone, turned)
 
 
-def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
+def _map_point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
     """Return the scene's point, or None and the reason."""
     load, f = scene.load, scene.friction.f
     if not load.in_phase:

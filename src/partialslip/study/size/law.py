@@ -181,7 +181,7 @@ class Law:
     @property
     def bounds(self) -> tuple[float, float]:
         """95 % confidence interval of k."""
-        beside = self.scatter / math.sqrt(self._spread)
+        beside = self.scatter / math.sqrt(self._log_spread)
         return self.k - beside, self.k + beside
 
     @property
@@ -190,7 +190,7 @@ class Law:
         return self.bounds[0] > 0
 
     @property
-    def _spread(self) -> float:
+    def _log_spread(self) -> float:
         """Sum of squared distances of the logarithms of the sizes from their mean."""
         logs = np.log(self.sizes)
         return float(np.sum((logs - logs.mean()) ** 2))
@@ -207,7 +207,7 @@ class Law:
             return (math.inf,) * 3
         middle = float(np.log(self.sizes).mean())
         rise = math.log(left) - math.log(self.C) + self.k * middle
-        slope = self.scatter**2 / self._spread
+        slope = self.scatter**2 / self._log_spread
         steep = self.k**2 - slope
         beside = math.sqrt(slope * rise**2 + self.scatter**2 / len(self.sizes) * steep)
         low, high = (math.exp(middle + (-self.k * rise + way * beside) / steep) for way in (-1, 1))

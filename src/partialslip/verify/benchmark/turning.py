@@ -51,7 +51,7 @@ def event_by_event(scene: Scene, places: tuple[float, ...]) -> dict[str, float]:
     pressed, f, load = contact(scene), scene.friction.f, scene.load
     Qf, sf = load.dQ / (2 * f * scene.P), load.dsigma / (f * pressed.p0)
     halves = [_half(Qf, sf, count, pressed.shape) for count in _CELLS]
-    coarse, fine = (np.array(_ends(half)) for half in halves)
+    coarse, fine = (np.array(_stick_ends(half)) for half in halves)
     left, right = (2 * fine - coarse) * pressed.a
     half = halves[-1]
     middles = (half.vertices[1:] + half.vertices[:-1]) / 2
@@ -82,7 +82,7 @@ def _width(Qf: float, sf: float, count: int) -> float:
     return 8 * Qf / sf / count
 
 
-def _ends(half: _Half) -> tuple[float, float]:
+def _stick_ends(half: _Half) -> tuple[float, float]:
     """Left and right end at the load point, x/a: where the last cells stuck again and where the last began to slip."""
     x, leg = (half.vertices[1:] + half.vertices[:-1]) / 2, half.leg
     middle = x[~leg.slips].mean()
