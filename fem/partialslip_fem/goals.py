@@ -256,7 +256,7 @@ def corner(solution: MeshSolution, problem: ScaledProblem) -> float:
 
 def gaps(solution: MeshSolution, problem: ScaledProblem) -> Array:
     """Distances of each zone end to the zone ends, kinks of the profile and of the coefficient of friction, and points
-    where slip turns round beside it, (2, k), in contact half-widths.
+    where slip reverses beside it, (2, k), in contact half-widths.
 
     Row 0: from each end of the stick zone to the other end of the stick zone; infinite for other ends. Row 1: to the
     nearest of all other ends and kinks.

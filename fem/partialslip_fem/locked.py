@@ -1,4 +1,4 @@
-"""Errors of the ends of the stick zone due to slip that is locked in where nodes stuck again on the way.
+"""Errors of the ends of the stick zone due to slip that is locked in where nodes re-stuck on the way.
 
 The ends depend on the loads and on the slip s that is locked in within the stick zone, and on nothing else: where no
 node has slipped, s is zero without any error. An error of s answers at an end like a dislocation. With the zone's
@@ -22,7 +22,7 @@ where w is singular, that is too much: an error that grows from one side of the 
 mean of w. Where the other end has come back over a part of a jump, the part that is left has a share of the error that
 does not go within the zone: there the mean counts, with the length of the whole jump. To and fro do not cancel in a
 part: l is at least L/2. Errors of different places are independent of each other: their squares are added. But slip
-that is off where an end turned round stays off for all points that the end takes after that: an end is known no better
+that is off where an end reversed stays off for all points that the end takes after that: an end is known no better
 than the sum, with signs, of what the difference of two solutions moves it by.
 """
 
@@ -99,7 +99,7 @@ def _differences(solution: MeshSolution, other: MeshSolution) -> tuple[Array, Ar
 
 
 def _jumps(solution: MeshSolution) -> tuple[Array, Array]:
-    """Intervals of nodes that stuck again at the same instant, of which some are in the stick zone of ``solution``,
+    """Intervals of nodes that re-stuck at the same instant, of which some are in the stick zone of ``solution``,
     (2, j), and errors of half of the slip that is locked in there, (j,)."""
     stick, history = solution.stick, solution.history
     assert stick

@@ -141,7 +141,7 @@ class MeshSolution(ContactForces, Zones):
     coupled : bool
         Whether p and q were solved together.
     dissimilar : bool
-        Whether shear moves surfaces along y as it does in half-planes of unlike materials (Dundurs' beta is not 0).
+        Whether shear moves surfaces along y as it does in half-planes of dissimilar materials (Dundurs' beta is not 0).
     moving : bool
         Whether the pressure varies.
     largest : int
@@ -176,7 +176,7 @@ class MeshSolution(ContactForces, Zones):
 
     @property
     def turning(self) -> list[float]:
-        """Points where an end of the stick zone turned round: kinks of q beside which its ends are known poorly."""
+        """Points where an end of the stick zone reversed: kinks of q beside which its ends are known poorly."""
         return self.history.turning(self.lower.x[self.nodes]) if self.history else []
 
     @property

@@ -288,8 +288,8 @@ class ScaledProblem:
 
     @property
     def touches_first(self) -> float | None:
-        """Point at which bodies of unlike materials touch first under an even gap: q, locked in while they are pressed
-        together, varies there like x log|x|, and p like |x|. None where there is no such point."""
+        """Point at which bodies of dissimilar materials touch first under an even gap: q, locked in while they are
+        pressed together, varies there like x log|x|, and p like |x|. None where there is no such point."""
         if self.even_gap is None or self.even_gap.places[0] or not (self.beta and self.path) or self.start:
             return None
         return -self.origin

@@ -85,7 +85,7 @@ class Legs:
         Normal forces on each way of the path.
     path : Path
     few : int
-        Nodes that may slip both ways where slip does not turn round.
+        Nodes that may slip both ways where slip does not reverse.
     """
 
     def __init__(

@@ -63,12 +63,12 @@ class History:
     around : Steps
         The load steps of the last cycle.
     turns : bool
-        In phase: whether slip turns round on a leg of the last cycle.
+        In phase: whether slip reverses on a leg of the last cycle.
     changed : (n,) array or None
         In phase: share of the leg to load point 2 at which a node last began to slip or to stick; nan where it did
         neither. None if the leg was not followed.
     stuck : (n,) array or None
-        On the same leg: share at which a node last stuck again, whether or not it slipped once more; nan where it
+        On the same leg: share at which a node last re-stuck, whether or not it slipped once more; nan where it
         never did.
     events : int
         Number of instants at which rates change, on legs that are followed.
@@ -186,7 +186,7 @@ class History:
     def unsteady(self) -> Array | None:
         """Room 2 f p - \\|dq\\| that is gone in the steady state, (n,); None if no cycles were followed.
 
-        Gone is room that has no limit but none (:func:`partialslip.friction.limit.lost`). Nodes that stick again after
+        Gone is room that has no limit but none (:func:`partialslip.friction.limit.lost`). Nodes that re-stick after
         they slipped come to the bound slowly: their changes in geometric progression add up to the last change times
         r/(1 - r), with r the ratio of the last two changes; r is known within a factor of two of 1 - r, where cycles
         end close to their limit. Room that falls with a power of the cycles lasts as many changes of the last cycle as
@@ -277,7 +277,7 @@ class History:
         return None if never is None or creeps is None else never | creeps
 
     def turning(self, x: Array) -> list[float]:
-        """Points where an end of the stick zone turned round, between the nodes ``x`` (n,); none where this is not
+        """Points where an end of the stick zone reversed, between the nodes ``x`` (n,); none where this is not
         known."""
         still = self.still if self.turns else None
         return [] if still is None else turning_points(x, still, self.slips)

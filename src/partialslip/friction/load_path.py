@@ -53,7 +53,7 @@ class Path:
     ``substeps`` is the smallest number of steps between points. ``ways`` are the steps as ascending fractions up to 1:
     to the last point first, then to each point of the cycle; default: ``substeps`` equal steps. A path that is
     ``followed`` has no steps: where the pressure varies, each leg is followed event by event. ``turns`` tells whether
-    slip is known to turn round on the way. ``missed`` is the work of friction that the steps miss: nothing on a path
+    slip is known to reverse on the way. ``missed`` is the work of friction that the steps miss: nothing on a path
     that is followed, and None where it is not known.
     """
 

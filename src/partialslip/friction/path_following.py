@@ -1,7 +1,7 @@
 """Coulomb friction along a straight leg of the load path, exactly in time, event by event.
 
 The rates of all nodes are constant between two events. At an event a node reaches its bound and begins to slip; held
-nodes whose slip would turn round stick again; where the pressure varies, nodes touch and open. Each change of a node is
+nodes whose slip would reverse re-stick; where the pressure varies, nodes touch and open. Each change of a node is
 a principal pivot (:class:`partialslip.friction.tableau.Tableau`). There are no load steps, and no errors of load
 steps. This is parametric quadratic programming; the rates after an event are found by principal pivoting (Keller,
 1973).
@@ -85,7 +85,7 @@ class Leg:
     lowest, highest : (n,) arrays
         Smallest and largest forces along the leg, its ends included.
     began, stuck : (n,) arrays
-        lambda at which a node last began to slip, and at which it last began to stick again; nan: never.
+        lambda at which a node last began to slip, and at which it last began to re-stick; nan: never.
     slips : (n,) bool array
         Nodes that slip at the end.
     dissipated : float

@@ -21,7 +21,7 @@ and only the force P(s) of the half-width s differs:
     q(x) = int_x^a q_flat(x/s) P'(s) ds / s,    of like bodies of a size q_flat(x/s) P'(s) ds / a,
 
 where a step w of the gap's curvature at |x| = b adds w s arccos(b/s) to P'(s), as on half-planes of like materials; of
-unlike ones see :mod:`partialslip.friction.even_gap`.
+dissimilar ones see :mod:`partialslip.friction.even_gap`.
 
 In other bodies of a size the stages are nearly similar: what a punch
 does at x/s depends on (s/W)^2, W being the size. What counts of an earlier stage are the displacements at which points

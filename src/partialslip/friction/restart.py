@@ -24,7 +24,7 @@ from partialslip.tools.bars import BARS, LEAST_SHEAR
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-# limit: relative L2 difference of pressures of two contacts; shear of unlike bodies changes p by a tenth
+# limit: relative L2 difference of pressures of two contacts; shear of dissimilar bodies changes p by a tenth
 _ANOTHER = 0.25
 _UNKNOWN = "the error of the state at the beginning is not known: the estimates leave it out"
 

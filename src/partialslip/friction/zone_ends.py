@@ -8,13 +8,13 @@ in the last elements.
 The fit needs a smooth function. Cells grow away from the end, so its vertices may reach as far as a kink of the
 profile, or as far as the gap departs from a parabola. A second fit, to fewer vertices, tells by how much that matters.
 
-Where the stick zone moves over nodes that have slipped, they stick again, and 2 f p - |dq| falls towards the end like
-distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth. The loads at which these nodes stuck
-again tell the end, too: it is read from them where many stuck at once.
+Where the stick zone moves over nodes that have slipped, they re-stick, and 2 f p - |dq| falls towards the end like
+distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth. The loads at which these nodes re-stuck
+tell the end, too: it is read from them where many stuck at once.
 
 An end that came back into a strip of such nodes is fitted to this strip alone: at its other side q has a kink. Where
 the strip is narrow, the end lies between the last node that sticks and the first one that slips. The strip may be
-narrower than the distance of two nodes: then no node lies in it, but the first one beyond had stuck again before it
+narrower than the distance of two nodes: then no node lies in it, but the first one beyond had re-stuck before it
 slips, if it slips at all.
 """
 
@@ -48,10 +48,10 @@ ROUNDED, CORNER = 3 / 2, 1 / 2
 class StickInterval:
     """Interval [``left``, ``right``] in which dq is less than the bounds allow, the ``signs`` of dq on its left and
     right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are ends that moved,
-    as the loads tell at which the nodes beside them stuck again; nan where no nodes did. ``strips`` are lengths
+    as the loads tell at which the nodes beside them re-stuck; nan where no nodes did. ``strips`` are lengths
     beside the ends over which so few nodes slipped before that the end is read as if none had, or over which there is
     hardly any room up to the bound; where more nodes slipped, but too few for a fit, or where none did although the end
-    had turned round, the distance of the nodes between which the end lies; where the room beside an end that moved does
+    had reversed, the distance of the nodes between which the end lies; where the room beside an end that moved does
     not tell it, the distance of both readings. ``fits`` are the distances between the ends that many and few vertices
     of the mesh tell: errors of the fit."""
 
@@ -89,10 +89,10 @@ def read_stick_zone(
     unsteady : (n,) array, optional
         Room that counts as none.
     stuck : (n,) array, optional
-        When nodes last stuck again, be it that they slipped once more; nan where they never did.
+        When nodes last re-stuck, be it that they slipped once more; nan where they never did.
     """
     room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
-    still = room > _STICKS  # nodes whose room is unsteady stick again, too
+    still = room > _STICKS  # nodes whose room is unsteady re-stick, too
     if unsteady is not None:
         room = np.where(room * bound <= unsteady, 0.0, room)
         change = np.where(room > 0, change, np.sign(change) * 2 * bound)
@@ -115,7 +115,7 @@ def read_stick_zone(
         for end_of, room, nodes, power in zip((left_end, right_end), rooms, fitted, powers, strict=True)
     )
     fits = abs(left - near_left), abs(right - near_right)
-    if changed is not None:  # beside a point where an end turned round, few vertices are left to the fit
+    if changed is not None:  # beside a point where an end reversed, few vertices are left to the fit
         left = float(np.clip(left, *x[np.clip([first - 2, first + 1], 0, len(x) - 1)]))
         right = float(np.clip(right, *x[np.clip([last - 2, last + 1], 0, len(x) - 1)]))
     moved = powers[0] != _ROOT, powers[1] != _ROOT
@@ -150,7 +150,7 @@ def _outward_end(
 ) -> tuple[float, float]:
     """An end of the stick zone that has moved outwards, and what is not known of it: the end that the room tells,
     ``read`` by a ``fit`` of this error, or the one that was ``caught``, which tells it where many nodes ``inside``
-    stuck again at once. ``hidden``: room that counts as none hides the end."""
+    re-stuck at once. ``hidden``: room that counts as none hides the end."""
     apart = abs(caught - read)
     if not math.isfinite(apart):
         return read, 0.0
@@ -190,7 +190,7 @@ def _flat(x: Array, room: Array, inside: Indices) -> float:
 
 def _caught_up(x: Array, changed: Array, inside: Indices) -> float:
     """Where an end of the stick zone is at the end of a leg on which it moved outwards, from the shares of the leg at
-    which the nodes ``inside`` the zone, from the end on, stuck again: its speed is finite there; nan if they
+    which the nodes ``inside`` the zone, from the end on, re-stuck: its speed is finite there; nan if they
     stuck at fewer than ``_RUN`` instants."""
     since = 1 - changed[inside[:_CAUGHT]]
     still = np.flatnonzero(~np.isfinite(since))
@@ -293,7 +293,7 @@ def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callab
 
 
 def turning_points(x: Array, still: Mask, slips: Mask) -> list[float]:
-    """Points where an end of the stick zone turned round, which leaves a kink in q: between the nodes ``x`` (n,),
+    """Points where an end of the stick zone reversed, which leaves a kink in q: between the nodes ``x`` (n,),
     ascending, that are ``still`` (n,) in a steady cycle and those that slip, but for the ends of the stick zone, beside
     which a node ``slips`` (n,) from load point 1 to 2."""
     starts = np.concatenate([[0], np.flatnonzero(np.diff(still)) + 1, [len(x)]])
@@ -369,8 +369,8 @@ def contact_ends(
 ) -> tuple[float, float]:
     """Left and right end of the contact.
 
-    Where unlike bodies slip under q = r p, p varies near the right end like distance^(1/2 + atan(beta r)/pi), and near
-    the left end like distance^(1/2 - atan(beta r)/pi) (Comninou 1976).
+    Where dissimilar bodies slip under q = r p, p varies near the right end like distance^(1/2 + atan(beta r)/pi), and
+    near the left end like distance^(1/2 - atan(beta r)/pi) (Comninou 1976).
 
     Parameters
     ----------

@@ -233,7 +233,7 @@ def one_step_zone(
 ) -> StickZone[Array]:
     """Stick zones by the paper's consistency conditions, eqs. (17) and (18), m; arrays of the broadcast shape.
 
-    The conditions go from load point to load point in a single step. Where slip turns round on the way, gradual loads
+    The conditions go from load point to load point in a single step. Where slip reverses on the way, gradual loads
     have another stick zone: :func:`partialslip.halfplane.stick_zone`.
 
     Where the loads of an array make the contact slide, |dQ| >= 2 f P, the stick zone is NaN, and

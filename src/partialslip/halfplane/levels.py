@@ -102,7 +102,7 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Change) -> Levels | st
 
 
 def _where_slip_turns(pressed: Contact, f: float, load: Load, cycle: Turning) -> Levels | str:
-    """q1 and q2 where slip turns round: known where every point slips in the steady cycle, and where the loads can be
+    """q1 and q2 where slip reverses: known where every point slips in the steady cycle, and where the loads can be
     followed from zero."""
     if not cycle.permanent:
         return Levels(pressed, f, cycle.reached, cycle, 1)

@@ -1,4 +1,4 @@
-"""Half a steady cycle in which slip turns round, under gradual loads (docs/theory.md, section 7). Scaled: lengths by a,
+"""Half a steady cycle in which slip reverses, under gradual loads (docs/theory.md, section 7). Scaled: lengths by a,
 tractions by f p0, slip by A f p0 a."""
 
 import math
@@ -26,7 +26,7 @@ _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a s
 
 @dataclass(frozen=True)
 class Turning(Change):
-    """Half a steady cycle in which slip turns round: the change ``once`` of the loads in a single step, which does not
+    """Half a steady cycle in which slip reverses: the change ``once`` of the loads in a single step, which does not
     hold, and the ``way`` of gradual loads, for positive changes."""
 
     once: Loading
@@ -105,7 +105,7 @@ class Turning(Change):
 
 @dataclass(frozen=True, eq=False)
 class Turned:
-    """Shear traction where slip has turned round: ``factor`` times the tractions ``q`` less those ``before`` (None:
+    """Shear traction where slip has reversed: ``factor`` times the tractions ``q`` less those ``before`` (None:
     zero), and the ends of the interval of points that have ``never`` slipped (None if there are none), for positive
     changes of the loads; ``turn`` and ``mirror`` as of :class:`Turning`."""
 
@@ -139,7 +139,7 @@ def half_cycle(
     pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, parts: bool = True
 ) -> Change:
     """Half a steady cycle between loads that change by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m), of any
-    sign, with |dQ| < 2 f P. Where slip turns round and the gradual way is not known, the single step, which does not
+    sign, with |dQ| < 2 f P. Where slip reverses and the gradual way is not known, the single step, which does not
     hold (:attr:`Loading.holds`). Without ``parts`` a slip zone inside the stick zone is not followed, and the way has
     no certificate: for differences between pressures that are nearly the same.
 

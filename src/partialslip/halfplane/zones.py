@@ -25,7 +25,7 @@ def stick_zone(
     """Stick zones of the steady state under gradual loads, m; arrays of the broadcast shape.
 
     A stick zone is the zone of the tractions: \\|dq\\| is less than 2 f p between the load points. Where slip does not
-    turn round on the way it follows from the consistency conditions (:func:`one_step_zone`), a million in about a
+    reverse on the way it follows from the consistency conditions (:func:`one_step_zone`), a million in about a
     second. Elsewhere (docs/theory.md, section 7) arrays of loads of a Hertz contact take their zones from a table,
     within 1e-6 a of the solver; under other profiles each pair of loads takes the solver, about half a second. Where a
     zone inside the stick zone slips, too, the table has only loads up to 9.2 f p0 under which all points that slipped

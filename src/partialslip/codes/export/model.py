@@ -212,7 +212,7 @@ def _half_widths(scene: Scene) -> tuple[float, float, float]:
 
 
 def _contact_ends(scene: Scene, pressing: Pressing) -> tuple[float, float]:
-    """Ends of the contact under P and M, m; for finite or unlike bodies nearly, without friction."""
+    """Ends of the contact under P and M, m; for finite or dissimilar bodies nearly, without friction."""
     if scene.material.alike and not scene.finite:
         return contact(scene, pressing).ends
     from partialslip.run import run

@@ -204,7 +204,7 @@ def steady(loads: Loads, shape: Shape, parts: bool = True) -> HalfCycle:
     Parameters
     ----------
     loads : Loads
-        Loads under which the stick zone drifts: slip turns round on the way.
+        Loads under which the stick zone drifts: slip reverses on the way.
     shape : Shape
         Pressure.
     parts : bool

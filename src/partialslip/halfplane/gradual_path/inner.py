@@ -22,7 +22,7 @@ def opens(first: Stage, least: float) -> bool:
 
 def inner_phase(loads: Loads, first: Stage, near: object = None) -> "Parted":
     """The phase in which a zone inside the stick zone slips, from ``first`` on, perhaps ``near`` a similar phase."""
-    # Why this stays, though it is two fifths of its package: of 144 random scenes slip turns round in 46, and in 23 of
+    # Why this stays, though it is two fifths of its package: of 144 random scenes slip reverses in 46, and in 23 of
     # these a zone inside slips, which moves m or n by up to 3e-2 a (by less than 1e-7 a in most). Without it the exact
     # method would refuse them, and march, which knows three to four digits, would be their reference. Of the 23, 19 are
     # solved here, in 0.3 to 7 CPU s in place of 0.05 to 0.6 s; none is a shipped scene or a benchmark problem.

@@ -56,8 +56,8 @@ _NARROW = 1e-4  # accuracy: width of an inner zone that may be closed where its 
 _HALVINGS = 12  # limit: of a panel where an event is sought
 _SHORTEST = 1e-15  # limit: panel
 _REFUSED = 24  # limit: halvings of a panel after the first, after which the way is lost
-_FARTHER = 1.05  # cost: by which a panel is longer than the one that it is like, for b to turn round in it
-# accuracy: z0 - b where b turns round; ways from there that rounding hides in the changes of q
+_FARTHER = 1.05  # cost: by which a panel is longer than the one that it is like, for b to reverse in it
+# accuracy: z0 - b where b reverses; ways from there that rounding hides in the changes of q
 _TURNED, _NEAR_TURN = 1e-9, 1e-7
 
 
@@ -303,7 +303,7 @@ class Way(Seen):
         return min(found)[1:] + min(found)[:1] if found else None
 
     def _turn(self, panel: Panel) -> float | None:
-        """s at which b turns round: where it takes points and would move to the right, or retreats and would do so
+        """s at which b reverses: where it takes points and would move to the right, or retreats and would do so
         beyond z0."""
         s = np.linspace(0, 1, 401)
         at = panel.at(s)
@@ -384,7 +384,7 @@ class Way(Seen):
         """A panel by Newton's method, perhaps from ways that are ``like`` these (5, nodes); None if it does not
         converge. The length is unknown if there is an ``event``.
 
-        Where b has just turned round, it moves by a quarter of what the place does at which it would take points: both
+        Where b has just reversed, it moves by a quarter of what the place does at which it would take points: both
         go with the square of the time, and by this quarter what a point has seen adds up to nothing. At the beginning
         it moves by half of that: both go with the time, and no point has seen anything before.
         """
@@ -481,7 +481,7 @@ class Way(Seen):
             step = longer, moves
             length, offsets = length + step[0], offsets + step[1]
             largest, moved = np.abs(change).max(axis=1), np.abs(offsets[list(free)]).max(axis=1)
-            relative = free.index(A), free.index(L), free.index(R)  # b need not be known as well where it turns round
+            relative = free.index(A), free.index(L), free.index(R)  # b need not be known as well where it reverses
             close = (largest < 1e-15 + _RELATIVE * moved)[list(relative)].all()
             if damp == 1 and close and largest.max() < (_CLOSE if count_of_steps < 2 else _SLOW):
                 return Panel(self.progress, length, begin, offsets, by, takes, self._kink, event)

@@ -1,6 +1,6 @@
 """Data of the stick-zone map: stick zones over a grid of loads, lengths as fractions of a.
 
-The zones are those of gradual loads where slip does not turn round and, for Hertz, where the table of gradual zones has
+The zones are those of gradual loads where slip does not reverse and, for Hertz, where the table of gradual zones has
 them. Elsewhere they are those of a single step, and marked.
 
 Loads are scaled by the friction: Qf = dQ/(2 f P) and sf = dsigma/(f p0) with p0 = 2 P/(pi a). The map shows positive
@@ -44,7 +44,7 @@ _ALONG = 101  # display: points per line
 
 class LoadedZones(NamedTuple):
     """Loads ``Qf`` and ``sf`` and their stick zones ``zone``, as fractions of a: arrays of one shape. ``turned``: where
-    the zones are those of a single step, and do not hold, as slip turns round between the load points."""
+    the zones are those of a single step, and do not hold, as slip reverses between the load points."""
 
     Qf: Array
     sf: Array
@@ -149,8 +149,8 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
 
 
 def require_stick_zones(scene: Scene) -> None:
-    """Raise InputError if ``scene`` has unlike bodies, displacements in place of Q, no friction, or a coefficient that
-    varies along x."""
+    """Raise InputError if ``scene`` has dissimilar bodies, displacements in place of Q, no friction, or a coefficient
+    that varies along x."""
     if not scene.material.alike:
         raise InputError("material.upper, material.lower: the bodies differ; must be of one material for a map")
     scene.load.require_forces(scene.units)
@@ -249,7 +249,7 @@ def _gap(join: tuple[MapLine, int, int], points: Array) -> float:
 
 
 def _tabled(line: MapLine, shape: Shape) -> Mask:
-    """Whether slip turns round at the points of a ``line``, and the table of gradual zones has them."""
+    """Whether slip reverses at the points of a ``line``, and the table of gradual zones has them."""
     on = (line.Qf >= 0) & (line.Qf < 1) & (line.sf >= 0)
     Qf, sf = np.where(on, line.Qf, 0), np.where(on, line.sf, 0)
     zone = stick_zones(Qf, sf, shape)

@@ -19,7 +19,7 @@ from partialslip.verify.benchmark.problem import Problem, Target
 from partialslip.verify.benchmark.turning import event_by_event, slip_reverses
 
 _DIGITS = 1e-9  # accuracy: uncertainty of exact solutions, in the scale of the quantity
-_FOLLOWED = 1e-6  # accuracy: uncertainty where slip turns round, unless the second way is farther off
+_FOLLOWED = 1e-6  # accuracy: uncertainty where slip reverses, unless the second way is farther off
 _ENDS = ("left_1", "right_1", "left_2", "right_2")
 _GRADUAL = "quadratures and an integral equation along the gradual path"
 _NEAR = 1e-3  # limit: another method that is farther off does not check the digits of an exact solution
@@ -77,7 +77,7 @@ def derivations(problem: Problem) -> tuple[Derivation, ...]:
 def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: None) -> tuple[dict[str, Target], str]:
     """Find the targets of ``problem``, and its regime.
 
-    The uncertainty is that of an exact solution; where slip turns round, the difference from the nearest other method;
+    The uncertainty is that of an exact solution; where slip reverses, the difference from the nearest other method;
     or the largest of the method's estimate and the differences between the methods.
 
     Parameters
@@ -115,7 +115,7 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
     tension = any(sigma or slope for _, sigma, slope in scene.load.along)
     symmetric = scene.even and not tension and (scene.material.alike or not any(scene.load.Q))
     if symmetric and {"m", "n"} <= targets.keys():
-        # m = n: a difference is an error. The first loading of unlike bodies leaves a trace of its direction
+        # m = n: a difference is an error. The first loading of dissimilar bodies leaves a trace of its direction
         apart = abs(targets["m"].value - targets["n"].value) / targets["m"].scale
         for key in "mn":
             targets[key] = replace(targets[key], uncertainty=max(apart, targets[key].uncertainty))
