@@ -126,7 +126,8 @@ def smooth_errors(
 
 
 def _of_locked(solution: MeshSolution, other: MeshSolution, change: float) -> list[float]:
-    """Errors of m and n, where slip reverses, due to slip that is locked in; ``change`` is that of q."""
+    """Errors e_lock of m and n under slip reversal due to locked-in slip, half-widths; ``change`` is the relative
+    change of q between both solutions, which limits them."""
     assert solution.history
     strengths = _strengths(solution, [solution.history.change / 2], solution.zone_ends[2:4])[0]
     errors = locked_in(solution, other, strengths) / solution.half_width
@@ -140,7 +141,12 @@ def _within_elements(solution: MeshSolution, breaks: Sequence[float]) -> bool:
 
 
 def end_errors(solution: MeshSolution, sizes: Array, inside: Array, gaps: Array, at_kinks: Array) -> dict[str, float]:
-    """Errors due to the elements at the ends, by key as for :func:`smooth_errors`.
+    """Errors due to the element sizes at the zone ends, by key as for :func:`smooth_errors`.
+
+    e_end = C(s) h, h = ``sizes``, s = ``inside``: tractions are square roots at a zone end, which two orders on one
+    mesh miss alike, so that their difference does not show e_end. C rises linearly from ``_AT_VERTEX`` at a vertex (s =
+    0) to ``_INSIDE`` at s >= ``_BESIDE`` (measured by benchmarks/estimates.py). The fit of the stick-zone ends adds a
+    term in (h/gap)^2.
 
     Parameters
     ----------
@@ -148,8 +154,7 @@ def end_errors(solution: MeshSolution, sizes: Array, inside: Array, gaps: Array,
     sizes : (k,) array
         Sizes of the elements at ``solution.zone_ends``, in contact half-widths.
     inside : (k,) array
-        How far inside these elements the ends lie, as from :meth:`MeshSolution.inside`: next to a vertex, which a mesh
-        graded to it has at an end that was known, their errors are a third or less.
+        Distances of the ends from the nearest vertex, in these elements, as from :meth:`MeshSolution.inside`.
     gaps : (2, k) array
         As from :func:`partialslip_fem.goals.gaps`.
     at_kinks : (j,) array

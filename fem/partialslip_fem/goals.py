@@ -76,8 +76,8 @@ class OutlineErrors(NamedTuple):
 
     @classmethod
     def at(cls, accuracy: float, problem: ScaledProblem, mesh: "NextMesh | None" = None) -> "OutlineErrors":
-        """What ``accuracy`` requires in ``problem``; on a ``mesh`` on the way to it, chords as good as the mesh is away
-        from the ends of zones."""
+        """Errors of facets and corners that ``accuracy`` allows in ``problem``; on an intermediate ``mesh``, coarser
+        facets suffice: facet_error is in proportion to the error away from the zone ends."""
         found = max(_KNOWN * mesh.size / mesh.finer / (_AWAY_SHARE * AIM), accuracy) if mesh else accuracy
         corner_error = min(_CORNER_ERROR * accuracy, LOOSEST)
         tilting = any(part.extent for part in problem.parts)
@@ -99,8 +99,8 @@ class NextMesh(NamedTuple):
 
 
 class MeshPlan(NamedTuple):
-    """What the next ``mesh`` is made of: elements of ``order``, whose size at the ends is on the way to ``enough``;
-    ``outline``: what becomes of round faces and corners."""
+    """Plan of the next ``mesh``: elements of ``order``, whose size at the zone ends is on the way to ``enough``, and
+    the errors of its ``outline``, round faces and corners."""
 
     mesh: NextMesh
     order: int
@@ -126,8 +126,8 @@ class Goal:
         Largest error due to the elements at the ends.
     growth : float
         Growth of the elements for which the error away from the ends is small enough.
-    outline : Outline
-        What becomes of round faces and corners.
+    outline : OutlineErrors
+        Allowed errors of round faces and corners.
     """
 
     accuracy: float
@@ -138,7 +138,7 @@ class Goal:
 
     @classmethod
     def at(cls, accuracy: float, problem: ScaledProblem) -> "Goal":
-        """The goal for ``accuracy`` in ``problem``."""
+        """Bars, element growth and outline errors that ``accuracy`` requires in ``problem``."""
         return cls(
             accuracy=accuracy,
             bar=BAR * accuracy,

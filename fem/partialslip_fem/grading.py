@@ -100,8 +100,8 @@ class EndErrors(NamedTuple):
     def of(
         cls, solution: MeshSolution, problem: ScaledProblem, plan: MeshPlan, grading: Grading, a: float
     ) -> "EndErrors":
-        """Those of ``solution`` on the mesh that was made by ``plan`` and ``grading``, for a contact of half-width
-        ``a``."""
+        """Errors at the zone ends of ``solution`` on the mesh made by ``plan`` and ``grading``; ``a`` is the contact
+        half-width."""
         ends = solution.zone_ends
         in_coarsest = problem.coarsest / problem.parts[0].fineness / a
         at_ends, at_kinks = (

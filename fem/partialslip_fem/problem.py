@@ -283,7 +283,7 @@ class ScaledProblem:
 
     @property
     def similar(self) -> bool:
-        """Whether the contact grows in similar ways, as that of half-planes in an even gap."""
+        """Whether the contact grows self-similarly, as between half-planes under an even gap."""
         return self.even_gap is not None and not self._sized
 
     @property
@@ -296,7 +296,8 @@ class ScaledProblem:
 
     @property
     def sized(self) -> bool:
-        """The same, nearly, of bodies of one material and of a size, which are coupled."""
+        """Whether the contact grows nearly self-similarly although p and q are coupled: bodies of one material, of
+        finite size, under an even gap."""
         even = self.even_gap is not None and (self.even_gap.parabolic or all(part.even for part in self.parts))
         return even and self._sized and self.coupled and not (self.beta or self.start)
 

@@ -60,7 +60,7 @@ class Polynomials:
     origin: float
 
     def at(self, x: Array) -> TractionAt:
-        """Tractions at ``x`` (k,), m, in Pa; zero off their cells."""
+        """p, q1 and q2 (Pa) at ``x`` (k,), m; zero outside the cells of the polynomials."""
         return self.scaled((x - self.origin) / self.length)
 
     def scaled(self, x: Array) -> TractionAt:

@@ -167,7 +167,7 @@ def _by_meshio(name: str, path: str, refuse: Refuse) -> Found:
 
 
 def _chosen(found: Found, body: str | int | None, refuse: Refuse) -> npt.NDArray[np.bool_]:
-    """Which elements belong to the ``body``, through all blocks; without one all do."""
+    """Mask of the elements that belong to ``body``, over all blocks of elements; all without a ``body``."""
     count = sum(len(cells) for _, cells in found.cells)
     if body is None:
         return np.ones(count, dtype=bool)

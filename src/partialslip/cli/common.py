@@ -205,7 +205,8 @@ def request(
     usual: Callable[[], Mapping[str, object]] = dict,
     constants: bool = False,
 ) -> "Request":
-    """Return what the command is asked for: what must be the same for files to be overwritten.
+    """Return the request of a command, by which result files are recognised: files are overwritten only by the same
+    request.
 
     Parameters
     ----------
@@ -214,10 +215,10 @@ def request(
     scene : Scene or None
         Scene as the user gave it.
     known : mapping
-        By option: an input file, whose content counts, or a setting as the command understands it.
+        By option, in place of its text: an input file, which counts by its content, or a setting that was interpreted.
     usual : callable
-        ``usual()``: what of ``known`` the command takes without options, where it is not the default of the parser, and
-        what the usual folder is named after. Called only where it decides.
+        ``usual()``: the values of ``known`` without options, where they differ from the parser's defaults. They name
+        the default folder. Called only without ``--out``.
     constants : bool
         Whether constants of fatigue criteria change the results.
     """

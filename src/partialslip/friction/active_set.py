@@ -40,8 +40,7 @@ class Solution:
     turn: float = 0.0
 
     def spread(self, where: Indices, count: int) -> "Solution":
-        """The solution at ``count`` members, of which those with the indices ``where`` have been solved; the others
-        have no forces."""
+        """Solution at ``count`` members from that at the members ``where`` (indices); zero forces at all others."""
         x, rest, residual = (spread(values, where, count) for values in (self.x, self.rest, self.residual))
         return replace(self, x=x, rest=rest, residual=residual)
 
@@ -393,7 +392,7 @@ class _BlockPivoting:
         return above.astype(np.int8) - below
 
     def _noise(self, x: Array, shift: float) -> Array:
-        """Rounding error of r."""
+        r"""Rounding error of the residual r = C x - g - shift: 4 eps (C_ii sum \|x\| + \|g\| + \|shift\|), (n,)."""
         return 4 * _EPS * (self.diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift))
 
     def _turn(self, wanted: Sides) -> None:

@@ -120,7 +120,8 @@ class LoadStep:
         return np.array([1.0, along, *([1.0] if self.pivot else [])])
 
     def _borne(self, found: Forces) -> Array:
-        """What of the totals the forces bear."""
+        """Resultants of the nodal forces to be compared with the prescribed totals: P; Q, or the displacement of the
+        actuator's end; and M about the pin if a body pivots."""
         p, q, (_, shift, *_) = found
         Q = float(q.sum())
         along = Q if self.actuator is None else self.actuator * Q + shift
@@ -256,8 +257,8 @@ class LoadStep:
         )
 
     def _gap_and_slip(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
-        """Opening of the gap, and slip, under the forces, (2, n). Nodes from the first up to the second of ``but``,
-        which are known to touch and to stick, are left out."""
+        """Opening of the gap and slip increment under the forces, (2, n); zero, not calculated, at nodes from but[0] up
+        to but[1], which stick."""
         p, q, (approach, shift, *_) = found
         gap, kept = self._turned(found)
         result = np.zeros((2, len(p)))
@@ -274,7 +275,7 @@ class LoadStep:
         return self.gap - along_y, self.kept + along_x
 
     def _solver(self, touch: Mask, slip: Sides) -> _Solver:
-        """What solves the linear system of one partition."""
+        """Solver of the linear system of a partition: nodes that ``touch``, sides that ``slip``."""
         solve = self._solver_without_pivot(touch, slip)
         if not (pivot := self.pivot):
             return solve
@@ -291,7 +292,7 @@ class LoadStep:
         return turned
 
     def _solver_without_pivot(self, touch: Mask, slip: Sides) -> _Solver:
-        """The same of bodies that do not turn."""
+        """Solver as :meth:`_solver` for bodies that do not rotate."""
         if self.factors and (partition := self.factors.partition(touch, slip, self.f)):
             return partial(partition.solve, actuator=self.actuator)
         on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))

@@ -184,18 +184,14 @@ class History:
 
     @property
     def unsteady(self) -> Array | None:
-        """Room 2 f p - \\|dq\\| that is gone in the steady state, (n,); None if no cycles were followed.
+        r"""Room 2 f p - \|dq\| that vanishes in the steady state, (n,); None if no cycles were followed.
 
-        Gone is room that has no limit but none (:func:`partialslip.friction.limit.lost`). Nodes that re-stick after
-        they slipped come to the bound slowly: their changes in geometric progression add up to the last change times
-        r/(1 - r), with r the ratio of the last two changes; r is known within a factor of two of 1 - r, where cycles
-        end close to their limit. Room that falls with a power of the cycles lasts as many changes of the last cycle as
-        cycles went before: more is not counted. A single node may hardly move by chance, so that the one of its
-        neighbours that moves most tells.
-
-        At constant pressure half cycles of a steady state are mirror images of each other: nodes that slip as they come
-        to load point 2 slip as they come to load point 1, too. All of their room is gone, even if it does not fall
-        evenly.
+        Room with the limit zero vanishes (:func:`partialslip.friction.limit.lost`). At re-stuck nodes, changes d of q
+        per cycle in geometric progression add up to d r/(1 - r), with r the ratio of the last two, and 1 - r known
+        within a factor of two; changes that fall like a power of the cycles count as d times the number of cycles
+        taken. d is the largest of a node and its neighbours, as a single node may hardly move by chance. At constant
+        pressure half cycles of a steady state mirror each other: nodes that slip towards load point 2 slip towards load
+        point 1, too, and lose all of their room.
         """
         if self.rooms is None:
             return None
@@ -262,8 +258,8 @@ class History:
 
     @property
     def creeps(self) -> Mask | None:
-        """Nodes that slip farther one way than back in the last cycle, (n,): they come to their place under mean loads,
-        and do not slip in the steady state. None where this is not known."""
+        """Nodes (n,) with net slip over the last cycle: they creep to their place under mean loads and do not slip in
+        the steady state. None if not known."""
         if self.slipped is None:
             return None
         forth, back = self.slipped

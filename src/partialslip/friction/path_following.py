@@ -51,7 +51,7 @@ class Bounds(NamedTuple):
 
     @property
     def reversed(self) -> "Bounds":
-        """The same on the way back."""
+        """Bounds along the reversed load segment."""
         return Bounds(1.0 - self.at[::-1], self.values[::-1])
 
     def of(self, nodes: Indices) -> "Bounds":
@@ -338,7 +338,7 @@ class _Leg:
         self._shift += float(p[-1])
 
     def _displacement_errors(self) -> Array:
-        """Errors of the displacements (n,): the way from the beginning, by a product with C, less what is added up."""
+        """Errors of the displacements summed up along the leg, (n,): C (F - F_start) less that sum."""
         return self._C @ (self._forces - self._start) - self._at * self._g - self._shift - self._rest
 
     def _begin(self) -> None:
@@ -371,13 +371,13 @@ class _Leg:
         return np.where(self._tableau.sticks, -self._p[:-1], 0.0) + self._along
 
     def _room(self) -> Array:
-        """What must not be negative (n,): T' away from the moving bound at nodes on it that stick, the rate of slip
-        along T at nodes that slip; 0 at the other nodes."""
+        """Rates that must be >= 0, (n,): of T away from the moving bound at nodes on it that stick, of slip along T at
+        nodes that slip; 0 at all other nodes."""
         return np.where(self._tableau.sticks, self._sides, -self._sides) * self._p[:-1]
 
     def _tolerance(self) -> Array:
-        """What of :meth:`_room` cannot be told from zero: rates that change forces by less than ``_AT`` of the bound
-        over the leg, or rounding errors."""
+        """Rates of :meth:`_room` that count as zero, (n,): rounding errors, or changes below ``_AT`` of the bound over
+        the leg."""
         return np.maximum(self._noise, self._least) * np.where(self._tableau.sticks, 1.0, self._diagonal)
 
     def _settle(self) -> None:
@@ -436,8 +436,8 @@ class _Leg:
             )
 
     def _refresh_tableau(self) -> None:
-        """Set the tableau up anew if a product with C shows errors of its rates, and correct what the events have added
-        up before it is too much to be rounding: the smaller the elements, the more it is."""
+        """Factor the tableau again if its rates do not solve C F' = g + shift' + slip' within rounding, and correct the
+        displacements that the events have summed up: their rounding errors grow as elements shrink."""
         rate, tableau = self._rate(), self._tableau
         rest = np.where(tableau.sticks, 0.0, self._p[:-1])
         off = np.abs(self._C @ rate - self._g - self._p[-1] - rest) / self._diagonal

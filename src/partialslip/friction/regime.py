@@ -88,7 +88,8 @@ def steady_state(
 
 
 def _unsure(history: History, regime: Regime) -> dict[str, str]:
-    """What the cycles of a ``history`` do not tell, as :attr:`Result.undetermined`."""
+    """Quantities that the cycles of a ``history`` leave undetermined, with the reasons, as
+    :attr:`Result.undetermined`."""
     unsure = {}
     if regime != "ratchets" and STEADY < history.ratchets <= _RATCHETS:
         unsure["regime"] = (

@@ -148,9 +148,13 @@ def read_stick_zone(
 def _outward_end(
     x: Array, changed: Array, inside: Indices, read: float, caught: float, fit: float, hidden: bool
 ) -> tuple[float, float]:
-    """An end of the stick zone that has moved outwards, and what is not known of it: the end that the room tells,
-    ``read`` by a ``fit`` of this error, or the one that was ``caught``, which tells it where many nodes ``inside``
-    re-stuck at once. ``hidden``: room that counts as none hides the end."""
+    r"""An end of the stick zone that has moved outwards, and its error.
+
+    Two readings: ``read``, from the room 2 f p - \|dq\|, with the error ``fit`` of its fit; ``caught``, from the loads
+    at which the nodes ``inside`` re-stuck, which replaces ``read`` where ``_RUN`` nodes or more re-stuck in one event
+    and both agree. The error is their difference, at most the length of these nodes. ``hidden``: the room there is
+    within rounding.
+    """
     apart = abs(caught - read)
     if not math.isfinite(apart):
         return read, 0.0
@@ -179,9 +183,9 @@ def _vertices(between: Array, vertices: Array) -> int:
 
 
 def _flat(x: Array, room: Array, inside: Indices) -> float:
-    """Length beside an end of the stick zone over which nodes ``inside`` it, from the end on, have hardly any ``room``,
-    in the bound, and all the same: they have all but stopped to slip, and whether they stick nothing tells. 0 where
-    room grows with the distance from the end, as it does beside every other end."""
+    """Length beside an end of the stick zone over which the ``room`` of the nodes ``inside``, over the bound, is small
+    and uniform, so that the end is uncertain by this length; 0 where room grows with the distance from the end, as
+    usual."""
     found = room[inside]
     flat = (found <= _LEAVES) & (found <= _SAME * found[0])
     count = len(flat) if flat.all() else int(np.argmin(flat))

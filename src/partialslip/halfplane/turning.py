@@ -26,8 +26,8 @@ _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a s
 
 @dataclass(frozen=True)
 class Turning(Change):
-    """Half a steady cycle in which slip reverses: the change ``once`` of the loads in a single step, which does not
-    hold, and the ``way`` of gradual loads, for positive changes."""
+    """Half a steady cycle with slip reversal, for positive changes: the solution ``way`` under gradual loads, and the
+    single load step ``once``, which is wrong there."""
 
     once: Loading
     way: HalfCycle

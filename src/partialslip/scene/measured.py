@@ -365,8 +365,8 @@ def _require_convex_within_noise(x: Array, residuals: Array, keys: ProfileFile, 
 
 
 def _largest_mean_residual(x: Array, residuals: Array, smooth: float) -> tuple[float, float, float]:
-    """Mean residual over the smoothing length where it says most, the noise of which it is a standard deviation, and
-    the place x."""
+    r"""Mean residual r of n points, r sqrt(n), and x, of the window of one smoothing length with the largest \|r\|
+    sqrt(n): under noise s, r has the standard deviation s/sqrt(n)."""
     window = np.floor((x - x[0]) / smooth).astype(int)
     count = np.bincount(window)
     sums, places = np.bincount(window, residuals), np.bincount(window, x)

@@ -94,8 +94,8 @@ def _said(message: str) -> str:
 
 
 def wanted(what: str, kinds: Mapping[str, str] = JSON_KINDS) -> str | None:
-    """Return the type or the bound that a value must have, in plain words, from ``what`` msgspec says; ``kinds`` are
-    the words of types. None if it says something else."""
+    """Type or bound that a value must have, in plain words, from msgspec's message ``what``; ``kinds`` are the words of
+    its types. None for any other message."""
     if wrong := re.fullmatch(r"Expected `([a-z]+(?: \| [a-z]+)*)`, got `(?:datetime\.)?([a-z]+)`", what):
         types = [kinds.get(kind, kind) for kind in wrong[1].split(" | ") if kind != "null"]
         return f"{' or '.join(types)}, not {kinds.get(wrong[2], wrong[2])}"

@@ -119,7 +119,7 @@ class HalfCycle:
         return self.phases[-1].last
 
     def at(self, progress: float) -> Stage:
-        """Stage at a ``progress`` from 0 to 1."""
+        """Stage (stick zone and q) of the half cycle at lambda = ``progress``, from 0 to 1."""
         phase = next((each for each in self.phases if progress < each.last.progress), None)
         return phase.at(progress) if phase else self.last
 
@@ -228,8 +228,8 @@ def steady(loads: Loads, shape: Shape, parts: bool = True) -> HalfCycle:
 
 
 def _state_distance(one: Tractions, other: Tractions) -> float:
-    """How far two states are apart: the outer ends of their stick zones, or q between these, in a part of f p0 that
-    counts as much."""
+    """Distance of two states: the largest difference of the outer ends of their stick zones (in a) or of q between
+    these ends (in f p0, times ``_OF_Q``)."""
     ends = np.array([[each.parts[0].high, each.parts[-1].low] for each in (one, other)])
     low, high = ends[:, 0].max(), ends[:, 1].min()
     x = low + (high - low) * _PROBES

@@ -15,7 +15,11 @@ _PATIENT = 24  # cost: steps without progress, for ways that are lost with fewer
 
 
 def opens(first: Stage, least: float) -> bool:
-    """Whether a zone inside the stick zone slips as a half cycle begins at the stage ``first``; ``least`` is c*."""
+    """Whether an inner slip zone opens inside the stick zone at the beginning of a half cycle, the stage ``first``.
+
+    It opens where points at the friction bound, of abscissa ``low`` on, lie to the left of e - c*: e - c* - low >
+    ``SHUT``, with e the centre of the stick zone and c* = ``least``.
+    """
     last = first.q.parts[-1]
     return last.smooth is None and first.zone.centre - least - last.low > SHUT
 

@@ -328,12 +328,13 @@ class Way(Seen):
         return float(low)
 
     def at(self, progress: float) -> Array:
-        """Ends and z0 (5,) at ``progress``."""
+        """Positions of the four zone ends and z0 at lambda = ``progress``, (5,)."""
         return ways(self.panels, np.array([progress]))[:, 0] if self.panels else self.first
 
     @property
     def kinks(self) -> list[float]:
-        """Points at which b began to take points while q or a way was not smooth."""
+        """x of the kinks that the end b of the inner slip zone leaves in q: b began to take points there while q or the
+        path of an end had a kink."""
         return [float(panel.begin[B]) for panel in self.panels if panel.takes and panel.kink]
 
     def _completed(self, begin: Array, offsets: Array, takes: bool) -> Array | None:

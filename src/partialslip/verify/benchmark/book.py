@@ -227,7 +227,7 @@ def _files(problem: Problem, checksum: str) -> dict[str, str]:
 
 
 def _given(tables: dict[str, Any]) -> dict[str, Any]:
-    """``tables`` of a scene without the keys that are no part of the problem."""
+    """``tables`` of a scene without the load keys that are not part of the problem (``_IDLE``)."""
     load = {key: value for key, value in tables["load"].items() if key not in _IDLE}
     return tables | {"load": load}
 
