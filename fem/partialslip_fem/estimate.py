@@ -328,18 +328,18 @@ def _norm(traction: PPoly) -> float:
 
 
 def _kink_errors(solution: MeshSolution, sizes: Array) -> list[float]:
-    """L2 errors of (q2 - q1)/2, q1 and q2 due to the elements of ``sizes`` (j,) at the kinks of ``solution``. Where an
-    end reversed, the kink is smoothed over as far as the nearest vertex."""
+    """L2 errors of (q2 - q1)/2, q1 and q2 due to elements of ``sizes`` (j,) at the kinks of ``solution``; where an end
+    of the stick zone reversed, the kink is smeared to the nearest vertex."""
     inside = solution.inside(np.array(solution.kinks))
     parts = np.where(_turned(solution), _TURNED_KINK * inside, _KINK)
     return np.hypot.reduce(parts * _kink_strengths(solution) * sizes, axis=1).tolist()
 
 
 def _kink_strengths(solution: MeshSolution) -> Array:
-    """Strengths of (q2 - q1)/2, q1 and q2 at the kinks of ``solution``, (3, j).
+    """Strengths of the kinks of (q2 - q1)/2, q1 and q2, (3, j).
 
-    (q2 - q1)/2 has a kink only where an end of the stick zone reversed. That point is known to half the distance of
-    two nodes: the strength is the largest one there.
+    (q2 - q1)/2 has a kink only where an end of the stick zone reversed; this point is known to half a node distance,
+    and the strength is the largest within it.
     """
     history, kinks, turned = solution.history, np.array(solution.kinks), _turned(solution)
     assert history

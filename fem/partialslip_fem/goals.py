@@ -236,12 +236,11 @@ def growth_at(accuracy: float, order: int) -> float:
 
 
 def eased(solution: MeshSolution, problem: ScaledProblem, order: int, growth: float) -> Eased | None:
-    """How much faster elements of ``order`` grow near the ends of zones than with the ``growth`` far away; None if they
-    do not.
+    """Faster growth of elements of ``order`` near the zone ends than ``growth`` far away; None if growth is the same.
 
-    An end depends on elements of the size h at the distance r from it like (h/r)^(2 order) r^2, as long as tractions
-    vary over the contact half-width. Beside a kink of the profile they vary over the distance of the kink from the end
-    of the contact: corners of punches carry large parts of p and q. Where zone ends wander, they do not vary smoothly.
+    An end of a zone depends on elements of size h at the distance r like (h/r)^(2 order) r^2, as long as tractions vary
+    over the contact half-width. Beside a kink of the profile they vary over its distance from the contact edge: corners
+    of punches carry large parts of p and q. Where zone ends wander, tractions are not smooth.
     """
     if order not in _EASED_SHARE or growth >= growth_for(_EASED_BELOW, order) or solution.wanders:
         return None

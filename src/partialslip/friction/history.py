@@ -134,9 +134,9 @@ class History:
 
     @cached_property
     def room(self) -> Array | None:
-        """Where the pressure varies, out of phase: the least room of q up to f p in the last cycle, plus that down to
-        -f p, (n,); zero where a node slips both ways, or is open at times. None elsewhere: it is f (p_1 + p_2) less the
-        change of q without sign."""
+        r"""Room of q up to f p plus room down to -f p, the least of each in the last cycle, (n,), out of phase under
+        varying pressure; zero where a node slips both ways or opens. None elsewhere: there it is f (p_1 + p_2) - \|q_2
+        - q_1\|."""
         if self.path.in_phase or not self.path.presses_anew:
             return None
         forces, bounds = self.around.forces, self.around.bounds

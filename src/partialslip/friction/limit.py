@@ -47,7 +47,7 @@ def cycles_settled(changes: Sequence[float]) -> bool:
 
 
 def ahead(states: Sequence[Array], bound: Array) -> float | None:
-    """How many times its last change the state at the end of a cycle is away from its limit.
+    """Distance of the state at the end of a cycle from its limit, over its last change.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def lost(rooms: Sequence[Array] | Array) -> Mask:
 
 
 def undecided(rooms: Sequence[Array] | Array, bound: Array, moved: float, cycles: int) -> Mask:
-    """Nodes (n,) of which it is not known yet whether they slip in the steady state.
+    """Nodes (n,) of which the cycles so far do not show whether they slip in the steady state.
 
     Parameters
     ----------

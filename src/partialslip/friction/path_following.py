@@ -146,7 +146,7 @@ class Leg:
 
 
 def joined(shifts: Sequence[Array]) -> Array:
-    """Rigid shifts since the beginning of legs that follow each other, from those since each leg began."""
+    """Rigid shifts since the beginning of consecutive legs, from the shifts since each leg began."""
     begins = np.cumsum([0.0, *(leg[-1] for leg in shifts)])
     return np.concatenate([begin + leg for begin, leg in zip(begins.tolist(), shifts, strict=False)])
 

@@ -75,7 +75,7 @@ class Pressed:
     corners: tuple[float, float] | None = None
 
     def on(self, nodes: Indices) -> "Pressed":
-        """The same with the growth at some ``nodes`` only (indices)."""
+        """Pressed bodies with the growth at the ``nodes`` (indices) only."""
         return replace(self, growth=(self.growth[0][nodes], self.growth[1][nodes]), f=self.f[nodes])
 
     def slipped(self) -> bool:
@@ -84,8 +84,8 @@ class Pressed:
         return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f[p > 0] * p[p > 0]).any())
 
     def scaled(self, stick: StickInterval, left: float, right: float) -> StickInterval:
-        """Stick zone of the contact from ``left`` to ``right``, from that of the ``growth``: it is the same part of the
-        contact as of the punch, which ends where nodes let it."""
+        """Stick zone of the contact from ``left`` to ``right``, from the ``stick`` zone under the flat punch of the
+        ``growth``: the same fraction of the contact as of the punch width between its corner nodes."""
         if not self.corners:
             return stick
         first, last = self.corners

@@ -58,6 +58,5 @@ def follow_or_step(
 
 
 def one_step_suffices(path: Path) -> bool:
-    """Whether the bulk tension is constant, so that Q drives all slip one way, which is known from the loads
-    (:attr:`Path.one_way`)."""
+    """Whether one load step is exact: constant bulk tension, and Q drives all slip one way (:attr:`Path.one_way`)."""
     return path.one_way and path.tension_stays

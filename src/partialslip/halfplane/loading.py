@@ -82,8 +82,8 @@ class Loading(Change):
 
     @property
     def final(self) -> bool:
-        """Whether there is no gradual way to look for: nothing changes, slip does not reverse, or the tension varies
-        along x, where none is known."""
+        """Whether the single load step is the answer: nothing changes, slip does not reverse, or the tension varies
+        along x, for which no solution under gradual loads is known."""
         return self.nothing or bool(self.gf) or self.holds
 
     @property
@@ -145,7 +145,7 @@ class Loading(Change):
 
     @cached_property
     def _zones_at_stages(self) -> StickZone[Array]:
-        """Stick zones at stages of the way; NaN where there is not one alone."""
+        """Stick zones at equal stages of the change of the loads; NaN where there are several."""
         shares = np.arange(1, _STAGES + 1) / _STAGES
         return stick_zones(shares * self.Qf, shares * self.sf, self.seen, shares * self.gf)
 

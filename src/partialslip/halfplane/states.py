@@ -64,7 +64,7 @@ class Around:
         return self.fields.surface(x)
 
     def _state_at(self, phase: float) -> StressState:
-        """State at a phase: criteria ask for the stresses of the same phases at one group of points after another."""
+        """State at a ``phase``, stored: criteria evaluate the same phases at one group of points after another."""
         if phase not in self._known:
             self._known[phase] = self._state(phase)
         return self._known[phase]

@@ -105,9 +105,9 @@ class Turning(Change):
 
 @dataclass(frozen=True, eq=False)
 class Turned:
-    """Shear traction where slip has reversed: ``factor`` times the tractions ``q`` less those ``before`` (None:
-    zero), and the ends of the interval of points that have ``never`` slipped (None if there are none), for positive
-    changes of the loads; ``turn`` and ``mirror`` as of :class:`Turning`."""
+    """Shear traction after slip reversal, ``factor`` (``q`` - ``before``) (None: zero), and the ends of the interval of
+    points that ``never`` slip (None if all do), for positive changes of the loads; ``turn`` and ``mirror`` as of
+    :class:`Turning`."""
 
     turn: int
     mirror: int
@@ -138,10 +138,12 @@ class Turned:
 def half_cycle(
     pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, parts: bool = True
 ) -> Change:
-    """Half a steady cycle between loads that change by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m), of any
-    sign, with |dQ| < 2 f P. Where slip reverses and the gradual way is not known, the single step, which does not
-    hold (:attr:`Loading.holds`). Without ``parts`` a slip zone inside the stick zone is not followed, and the way has
-    no certificate: for differences between pressures that are nearly the same.
+    r"""Half a steady cycle between loads that change by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m), of any
+    sign, \|dQ\| < 2 f P.
+
+    Under slip reversal the solution of gradual loads; where this is not known, the single load step, which does not
+    hold (:attr:`Loading.holds`). Without ``parts`` an inner slip zone is not followed and the solution has no
+    certificate: enough for differences between nearly equal pressures.
 
     Raises
     ------

@@ -80,7 +80,7 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def driving(self) -> tuple[float, ...]:
-        """What drives the bodies along x at the load points: Q (N/m), or the displacement (m)."""
+        """Q (N/m) or the prescribed displacement (m) at the load points."""
         return self._at_points("Q" if self.displacement is None else "displacement")
 
     @property
@@ -137,7 +137,7 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def _all(self) -> Array:
-        """What drives the bodies, sigma, P, M and sigma_slope at the load points, (points, 5)."""
+        """Q or displacement, sigma, P, M and sigma_slope at the load points, (points, 5)."""
         (sigma, slope), (P, M) = zip(*self.tension, strict=True), zip(*self.pressing(1.0), strict=True)
         return np.array([self.driving, sigma, P, M, slope]).T
 

@@ -186,7 +186,7 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
 
 
 def conclusions(verdicts: Iterable[CaseVerdict]) -> dict[tuple[str, str], Conclusion]:
-    """Return what the ``verdicts`` amount to, by case and method (:func:`partialslip.run.judge.conclude`)."""
+    """Return the outcome of the ``verdicts`` by case and method (:func:`partialslip.run.judge.conclude`)."""
     groups = grouped(((verdict.case, verdict.method), verdict) for verdict in verdicts)
     return {
         group: conclude(

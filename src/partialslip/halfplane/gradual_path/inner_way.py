@@ -116,7 +116,7 @@ class Way(Seen):
 
     @property
     def ends(self) -> Array:
-        """Ends and z0 at the end, (5,)."""
+        """Positions of the four zone ends and z0 at the last lambda reached, (5,)."""
         return self.panels[-1].end if self.panels else self.first
 
     def _follow(self) -> None:

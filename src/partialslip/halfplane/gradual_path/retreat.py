@@ -190,8 +190,11 @@ class Retreat:
         return zones[-1][1]
 
     def balanced(self, half_width: float, guess: float) -> float | None:
-        """Centre of the stick zone of this ``half_width`` c at which the rate of q is not singular at the left end,
-        shear/pi = c tension/4; by Newton's method from a ``guess``, and by halving where the left end is at a break."""
+        """Centre of the stick zone of half-width c = ``half_width`` at which the rate of q is bounded at the left end:
+        shear/pi = c tension/4.
+
+        By Newton's method from a ``guess``; by bisection where the left end is at a break of q. None if it fails.
+        """
         c = half_width
 
         def newton(centre: float) -> float:
@@ -230,7 +233,7 @@ class Retreat:
         return float(brentq(excess, low, high, xtol=1e-15))
 
     def inside(self, zone: Zone, from_left: Array, from_right: Array) -> Array:
-        """Change in the stick ``zone`` at distances from its ends."""
+        """Change of q in the stick ``zone``, at the distances ``from_left`` and ``from_right`` from its ends."""
         if zone != self._latest[0]:
             self._latest = zone, {side: self._side(zone, side) for side in (1, -1)}
         to = {1: np.sqrt(from_right), -1: np.sqrt(from_left)}

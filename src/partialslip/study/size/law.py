@@ -132,8 +132,8 @@ class Kind(StrEnum):
 
 
 class Floor(NamedTuple):
-    """What remains of a difference however large the varied sizes are, solved at a size that stands for an infinite
-    one: its ``value``, with the sign of the difference, the error of the ``mesh`` and what is ``falling`` yet."""
+    """Limit of a difference for infinite sizes, solved at a large size: ``value`` with its sign, error of the ``mesh``,
+    and the part still ``falling``."""
 
     value: float
     mesh: float
@@ -325,9 +325,11 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
 
 
 def _floor(size: Array, change: Array, mesh: Array, known: npt.NDArray[np.bool_], limit: float) -> Floor | None:
-    """What remains at an infinite size: the change at ``limit``. From the largest size to there, the differences of
-    bodies fall with 1/size at least (docs/sizes/half-plane.md). None where it exceeds those of all sizes by far: of a
-    body that turns slender, which bends, the difference grows."""
+    """Limit of the change at infinite size: the change at ``limit``.
+
+    From the largest size to ``limit`` differences of bodies fall with 1/size at least (docs/sizes/half-plane.md). None
+    where the change exceeds those of all sizes by far: a slender body bends, and its difference grows.
+    """
     at, last = np.flatnonzero(known & (size >= limit)), np.flatnonzero(known & (size < limit))
     if not (at.size and last.size):
         return None

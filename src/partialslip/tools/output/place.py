@@ -45,7 +45,7 @@ def _as_json(_: str, value: object) -> str:
 
 @dataclass(frozen=True)
 class Request:
-    """What a command is asked for.
+    """Request of a command: files are overwritten only by the same request.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ NOT_MONOTONE, NO_RATIO, MISSING = "not monotone", "no constant ratio", "not give
 
 
 class Climb(NamedTuple):
-    """What the last three meshes of a ladder say of a target.
+    """Convergence of a target over the last three meshes of a ladder.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Climb(NamedTuple):
 
 
 def climbs(problem: Problem, answer: Answer) -> list[Climb]:
-    """What the ladder of the ``answer`` says of each target of ``problem``; empty without a ladder."""
+    """Convergence of each target of ``problem`` on the ladder of the ``answer``; empty without a ladder."""
     return [_climb(problem, answer, key) for key in problem.targets] if answer.ladder else []
 
 
