@@ -24,8 +24,8 @@ _ROUNDING = 1e-9  # accuracy: part of the depth of a face
 
 
 class Line:
-    """The contact line of a body and the ``tractions`` on it: pressures in s states, then shears, (2 s) in the last
-    axis. ``part`` tells whether it is round; the body above is mirrored (``side`` = -1). Scaled."""
+    """Contact line of a body (``part``, perhaps round; the upper body is mirrored, ``side`` = -1) with the
+    ``tractions`` on it: pressures in s states, then shears, (2 s) in the last axis. Scaled."""
 
     def __init__(self, tractions: PPoly, part: Part, side: float) -> None:
         self._side, self._x, self._round = side, tractions.x, part.face is not None

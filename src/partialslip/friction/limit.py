@@ -153,8 +153,8 @@ class Cycles:
         self.changes, self.rooms = list[float](), list[Array]()
 
     def add(self, q: Array, before: Array, bound: Array, room: Array, largest: float, off: float) -> None:
-        """Add a cycle that changes the forces ``before`` it (n,) to ``q`` and leaves ``room`` (n,); ``largest`` and
-        ``off`` as for :func:`cycle_change`."""
+        """Add a cycle that changes the forces ``before`` (n,) to ``q`` and leaves the ``room`` (n,) to the bounds;
+        ``largest`` and ``off`` as for :func:`cycle_change`."""
         self._count += 1
         self.changes.append(cycle_change(q, before, self._settled * bound, largest, off))
         self.rooms.append(room)

@@ -230,10 +230,12 @@ class FlatPunch:
 
 
 def disproportion(x: Array, punch: tuple[Array, Array], other: tuple[Array, Array]) -> float:
-    """Relative error of the assumption that q under the force 1 grows like the half-width, from forces along y and x
-    under two flat punches, (n,) each, at ``x`` (n,) from their middle: those along x on either side are in proportion
-    to the spread of those along y, which tells the half-width better than corners do, beside which elements may be
-    large."""
+    """Relative error of q under the force 1 if it is assumed to grow like the half-width.
+
+    From the forces along y and x under two flat punches, (n,) each, at ``x`` (n,) from their middle: forces along x on
+    either side are in proportion to the spread of those along y, a better measure of the half-width than corners,
+    beside which elements may be large.
+    """
     sides = np.array([x < 0, x > 0])
     own, its = ((sides * q).sum(axis=1) / np.sqrt(p @ x**2) for p, q in (punch, other))
     scale = float(np.abs(own).max())

@@ -46,14 +46,15 @@ ROUNDED, CORNER = 3 / 2, 1 / 2
 
 @dataclass(frozen=True)
 class StickInterval:
-    """Interval [``left``, ``right``] in which dq is less than the bounds allow, the ``signs`` of dq on its left and
-    right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are ends that moved,
-    as the loads tell at which the nodes beside them re-stuck; nan where no nodes did. ``strips`` are lengths
-    beside the ends over which so few nodes slipped before that the end is read as if none had, or over which there is
-    hardly any room up to the bound; where more nodes slipped, but too few for a fit, or where none did although the end
-    had reversed, the distance of the nodes between which the end lies; where the room beside an end that moved does
-    not tell it, the distance of both readings. ``fits`` are the distances between the ends that many and few vertices
-    of the mesh tell: errors of the fit."""
+    r"""Stick zone [``left``, ``right``], where \|dq\| is below the sum of the bounds, with what its ends are read from;
+    pairs: left, right.
+
+    ``signs``: of dq beside the ends. ``moved``: whether the end last moved outwards, over points that had slipped.
+    ``caught``: such ends from the loads at which the nodes beside them re-stuck; nan without such nodes. ``strips``:
+    lengths within which an end is uncertain: few nodes slipped there, or room is hardly any, or too few nodes for a fit
+    slipped, or, beside an end that moved, the two readings differ. ``fits``: differences between fits to many and to
+    few vertices, the errors of the fit.
+    """
 
     left: float
     right: float

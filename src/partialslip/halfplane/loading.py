@@ -92,7 +92,7 @@ class Loading(Change):
 
     @property
     def _simple(self) -> bool:
-        """Whether two inequalities tell if slip reverses: the tension does not vary along x, and nor does f."""
+        """Whether two inequalities decide on slip reversal: neither the tension nor f varies along x."""
         return not self.gf and self.shape.convex
 
     @property

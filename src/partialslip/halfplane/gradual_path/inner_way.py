@@ -303,7 +303,7 @@ class Way(Seen):
         return min(found)[1:] + min(found)[:1] if found else None
 
     def _turn(self, panel: Panel) -> float | None:
-        """s at which b reverses: where it takes points and would move to the right, or retreats and would do so
+        """s at which the end b reverses: while it takes up points it would move to the right, or while it retreats,
         beyond z0."""
         s = np.linspace(0, 1, 401)
         at = panel.at(s)
