@@ -333,8 +333,8 @@ class Way(Seen):
 
     @property
     def kinks(self) -> list[float]:
-        """x of the kinks that the end b of the inner slip zone leaves in q: b began to take points there while q or the
-        path of an end had a kink."""
+        """x of kinks of q that the end b of the inner slip zone causes: its position when it began to take up points,
+        if q or the path of an end had a kink then."""
         return [float(panel.begin[B]) for panel in self.panels if panel.takes and panel.kink]
 
     def _completed(self, begin: Array, offsets: Array, takes: bool) -> Array | None:
