@@ -287,10 +287,10 @@ def corrected():
     leg = path_following._Leg(C, np.diag(C), Bounds.constant(bound), Tableau(np.linalg.inv(C)), start, 0 * bound, 0.0)
     leg._enter(0)
     leg._rest += 1e-12 * np.cos(40 * x)
-    before = np.abs(leg._off()).max()
+    before = np.abs(leg._displacement_errors()).max()
     leg._refine()
     assert (np.abs(leg._forces) <= bound).all()
-    return float(np.abs(leg._off()).max() / before)
+    return float(np.abs(leg._displacement_errors()).max() / before)
 
 
 @pytest.mark.fault

@@ -82,7 +82,9 @@ def test_the_conditions_hold_in_30_digits(shape, count):
 def test_bracketing_finds_the_same(shape):
     Qf, sf, gf = random_loads(30, 3)
     with np.errstate(divide="ignore", invalid="ignore"):
-        (edge, c), (other_edge, other_c) = (way(Qf, sf, shape, gf) for way in (steady._solve, steady._bracketed))
+        (edge, c), (other_edge, other_c) = (
+            way(Qf, sf, shape, gf) for way in (steady._edge_and_centre, steady._bracketed)
+        )
     known = np.isfinite(c)
     assert known.sum() > 20
     assert edge[known] == pytest.approx(other_edge[known], rel=0, abs=1e-11)

@@ -340,7 +340,7 @@ def test_a_contact_beyond_its_table_is_refused():
 def test_bracketing_finds_the_same(shape):
     random = np.random.default_rng(5)
     Qf, sf = random.random(50), 12 * random.random(50)
-    (edge, c), (other_edge, other_c) = (way(Qf, sf, shape) for way in (steady._solve, steady._bracketed))
+    (edge, c), (other_edge, other_c) = (way(Qf, sf, shape) for way in (steady._edge_and_centre, steady._bracketed))
     assert (np.sign(edge) == np.sign(other_edge)).all()
     assert edge == pytest.approx(other_edge, rel=0, abs=1e-11)
     assert c == pytest.approx(other_c, rel=1e-11)

@@ -42,7 +42,7 @@ def answered(script, told, change=lambda text: text):
 
 def asked(loads, change=lambda text: text):
     """Left end, right end and s by the page's program, None where it has none."""
-    return answered(ASK, {"table": live._table(), "loads": loads.tolist()}, change)
+    return answered(ASK, {"table": live._gradual_table(), "loads": loads.tolist()}, change)
 
 
 def turned():
@@ -116,4 +116,4 @@ def test_a_rounded_middle_shows():
 
 
 def test_the_table_on_the_page_is_small():
-    assert len(json.dumps(live._table())) < 60_000
+    assert len(json.dumps(live._gradual_table())) < 60_000

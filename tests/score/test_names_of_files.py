@@ -72,6 +72,6 @@ def test_scores_of_a_file_with_an_odd_name(table, tmp_path, capsys, name):
 @pytest.mark.fault
 def test_formulas_in_tables_are_caught(monkeypatch):
     """Deliberate fault: text is written as it is, but for control characters."""
-    monkeypatch.setattr(module, "_plain", lambda cell: module.printable(cell) if isinstance(cell, str) else cell)
+    monkeypatch.setattr(module, "_safe_cell", lambda cell: module.printable(cell) if isinstance(cell, str) else cell)
     with pytest.raises(AssertionError):
         test_text_is_no_formula_and_numbers_are_numbers()

@@ -91,7 +91,7 @@ def add(commands: Commands) -> None:
                               examples=["partialslip benchmark check my-answers",
                                         "partialslip benchmark check benchmarks/submissions/my-code"])  # fmt: skip
     checks.add_argument("folder", metavar="FOLDER", help="folder with the answers")
-    checks.set_defaults(command=_check)
+    checks.set_defaults(command=_check_submission)
 
     builds = parts.add_parser("build", help="write the book",
                               description="Write the book of problems, book.html and book.pdf, a zip of plain data, "
@@ -155,7 +155,7 @@ def _score(options: argparse.Namespace) -> int:
     return _graded(read_submission(options.folder, read_problems()), chosen_problems(options.problems))
 
 
-def _check(options: argparse.Namespace) -> int:
+def _check_submission(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
     from partialslip.tools.errors import one_line
     from partialslip.verify.benchmark import handed_in, read_problems

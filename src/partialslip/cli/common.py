@@ -205,7 +205,8 @@ def request(
     usual: Callable[[], Mapping[str, object]] = dict,
     constants: bool = False,
 ) -> "Request":
-    """Return what the command is asked for: what must be the same for files to be overwritten.
+    """Return the request of a command, by which result files are recognised: files are overwritten only by the same
+    request.
 
     Parameters
     ----------
@@ -214,10 +215,10 @@ def request(
     scene : Scene or None
         Scene as the user gave it.
     known : mapping
-        By option: an input file, whose content counts, or a setting as the command understands it.
+        By option, in place of its text: an input file, which counts by its content, or a setting that was interpreted.
     usual : callable
-        ``usual()``: what of ``known`` the command takes without options, where it is not the default of the parser, and
-        what the usual folder is named after. Called only where it decides.
+        ``usual()``: the values of ``known`` without options, where they differ from the parser's defaults. They name
+        the default folder. Called only without ``--out``.
     constants : bool
         Whether constants of fatigue criteria change the results.
     """
@@ -231,7 +232,7 @@ def request(
         return shown(key, value, units)
 
     def data(of: "Scene | None", settings: Mapping[str, object]) -> dict[str, Any]:
-        return {"command": command, "scene": _content(of, constants), "settings": _plain(settings)}
+        return {"command": command, "scene": _content(of, constants), "settings": _given_settings(settings)}
 
     given = {key: value for key, value in vars(options).items() if key not in _NEUTRAL}
     asked = data(scene, {**given, **known})
@@ -257,7 +258,7 @@ def _content(scene: "Scene | None", constants: bool) -> dict[str, Any]:
     return {key: value for key, value in scene_content(scene).items() if key != "title"} | more
 
 
-def _plain(settings: Mapping[str, object]) -> dict[str, object]:
+def _given_settings(settings: Mapping[str, object]) -> dict[str, object]:
     """Return ``settings`` that are given, as plain data."""
     from partialslip.tools.output.place import content
 

@@ -84,7 +84,7 @@ def _fatigue(options: argparse.Namespace) -> int:
 
 
 def _check_method(scene: "Scene", method: str | None) -> None:
-    """Raise InputError if ``method`` solves unlike bodies, but finds no stresses in them."""
+    """Raise InputError if ``method`` solves dissimilar bodies, but finds no stresses in them."""
     if method not in (None, "fem") and not scene.material.alike:
         raise InputError(f"--with {method}: must be fem for unlike materials; {method} finds no stresses in them")
 

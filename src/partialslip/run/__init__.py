@@ -279,8 +279,8 @@ def run(
         scene = plates.told(scene)
     for result in results.values():
         effects.accept(result.regime)
-    # no bars for finite and unlike bodies or for a fixed element size: there is no reference; none for effects forced
-    # off: the error measures the effect
+    # no bars for finite and dissimilar bodies or for a fixed element size: there is no reference; none for effects
+    # forced off: the error measures the effect
     judged = not scene.finite and scene.material.alike and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     accuracy = min(float(reached or scene.fem.accuracy), LARGEST)
@@ -307,7 +307,7 @@ def _forced(scene: Scene, result: Result) -> Scene:
 def _slid(scene: Scene, result: Result) -> Result:
     """Return ``result`` with q = f p if the contact slides, which no method solves for; otherwise as it is.
 
-    Unlike bodies are left out: there shear changes the pressure.
+    Dissimilar bodies are left out: there shear changes the pressure.
     """
     if result.regime != "sliding" or not scene.material.alike:
         return result

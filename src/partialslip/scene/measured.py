@@ -102,7 +102,7 @@ def _stated(line: str) -> list[str]:
     known = all(word.strip().lower() in LENGTHS for word in words)
     if len(words) == _COLUMNS and (known or all(square for square, _ in _BRACKETS.findall(line))):
         return words
-    cells = _cells(line)
+    cells = _column_words(line)
     last = [names[-1] for names in cells]
     if len(cells) == 1:
         last = [word for word in cells[0] if word.lower() in LENGTHS.keys() - _ENGLISH]
@@ -112,14 +112,14 @@ def _stated(line: str) -> list[str]:
     return words if alone else []
 
 
-def _cells(line: str) -> list[list[str]]:
+def _column_words(line: str) -> list[list[str]]:
     """Words of each column in a ``line`` of the heading."""
     return [words for cell in _CELLS.split(line) if (words := _WORD.findall(cell))]
 
 
 def _is_swapped(line: str) -> bool:
     """Whether a ``line`` of the heading names x as the second of two columns."""
-    first = [words[0].lower() for words in _cells(line)]
+    first = [words[0].lower() for words in _column_words(line)]
     return len(first) == _COLUMNS and first[1] == "x" != first[0]
 
 
@@ -225,7 +225,7 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
     scatter = float(np.sqrt(np.sum((gap - free.at) ** 2) / spare))
     noise = keys.noise or scatter
     sure = max(noise, _ROUNDING * float(np.ptp(gap)))
-    _check(x, gap - turning.at, keys, sure)
+    _require_convex_within_noise(x, gap - turning.at, keys, sure)
     more = float(np.sum((gap - fit.at) ** 2) - np.sum((gap - turning.at) ** 2))
     if more > (_SURE * sure) ** 2:
         _refuse_mirror(turning, keys)
@@ -294,7 +294,7 @@ def smoothest(known: Measured) -> float:
     x, gap = read_points(known.file, known.unit)
     noise, smooth = max(known.noise, _ROUNDING * float(np.ptp(gap))), known.smooth
     while round((x[-1] - x[0]) / (2 * smooth)) >= _COARSEST:
-        if _off(x, gap - _fitted(x, gap, 2 * smooth, True).at, 2 * smooth)[1] > _SURE * noise:
+        if _largest_mean_residual(x, gap - _fitted(x, gap, 2 * smooth, True).at, 2 * smooth)[1] > _SURE * noise:
             break
         smooth *= 2
     return smooth
@@ -353,9 +353,9 @@ def _refuse_mirror(fit: _Fit, keys: ProfileFile) -> NoReturn:
     )
 
 
-def _check(x: Array, residuals: Array, keys: ProfileFile, noise: float) -> None:
+def _require_convex_within_noise(x: Array, residuals: Array, keys: ProfileFile, noise: float) -> None:
     """Raise InputError where the mean residual over a smoothing length is larger than noise can make it."""
-    mean, deviation, at = _off(x, residuals, keys.smooth)
+    mean, deviation, at = _largest_mean_residual(x, residuals, keys.smooth)
     if deviation > _SURE * noise:
         raise InputError(
             f"profile.file: {keys.file}: at x = {at:.6g} m the points are off any convex gap by "
@@ -364,9 +364,9 @@ def _check(x: Array, residuals: Array, keys: ProfileFile, noise: float) -> None:
         )
 
 
-def _off(x: Array, residuals: Array, smooth: float) -> tuple[float, float, float]:
-    """Mean residual over the smoothing length where it says most, the noise of which it is a standard deviation, and
-    the place x."""
+def _largest_mean_residual(x: Array, residuals: Array, smooth: float) -> tuple[float, float, float]:
+    r"""Mean residual r of n points, r sqrt(n), and x, of the window of one smoothing length with the largest \|r\|
+    sqrt(n): under noise s, r has the standard deviation s/sqrt(n)."""
     window = np.floor((x - x[0]) / smooth).astype(int)
     count = np.bincount(window)
     sums, places = np.bincount(window, residuals), np.bincount(window, x)

@@ -18,7 +18,7 @@ from partialslip.verify.random_scenes import draw, draw_varying, kind_of, varies
 Suite = Literal["quick", "full", "book", "stress"]
 SUITES: tuple[Suite, ...] = get_args(Suite)
 
-# Levels of unlike half-planes by finite elements, which press them from a flat punch on the nodes of the contact
+# Levels of dissimilar half-planes by finite elements, which press them from a flat punch on the nodes of the contact
 _PRESSED = {
     key: Bar(0.05, "elements do not resolve the singular ends of the flat punch from which pressing is made")
     for key in ("fem.q1", "fem.q2")
