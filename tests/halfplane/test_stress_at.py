@@ -181,18 +181,6 @@ def test_mirrored_and_swapped():
     assert alone.stress_at(-x, -y, PHASES) == pytest.approx(alone.stress_at(x, y, PHASES), rel=0, abs=1e-12 * result.p0)
 
 
-def test_units():
-    """Lengths times 3 and loads per length times 3: the same stresses."""
-    scene = SCENES["mean Q"]
-    other = scene.replace(
-        profile={"R": 3 * scene.profile.R}, load={"P": 3 * scene.P, "Q": [3 * Q for Q in scene.load.Q]}
-    )
-    x, y = np.linspace(-2, 2, 40) * 1e-4, -np.linspace(0, 2, 40) * 1e-4
-    assert solved(other).stress_at(3 * x, 3 * y, PHASES) == pytest.approx(
-        solved(scene).stress_at(x, y, PHASES), rel=1e-10, abs=1e-10 * scene.P
-    )
-
-
 @pytest.mark.parametrize(
     ("overrides", "why"),
     [
