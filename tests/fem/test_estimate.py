@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from plain import plain
 
 import partialslip
 from partialslip.run.judge.measures import cell_means
-from partialslip.scene.reading import parse_scene
 from partialslip_fem import estimate, goals, solving
 from partialslip_fem.solving import solve_on_meshes
 
@@ -116,24 +116,12 @@ def test_how_steeply_pressure_begins_is_found(monkeypatch, name, steep):
 def test_a_kink_where_an_end_turned_round_within_an_element_is_seen(monkeypatch):
     """At 1e-3 the elements are coarse where the right end turned round, and elements of both orders miss the kink of q
     there by the same. Deliberate fault: q has kinks at the ends of the stick zone alone."""
-    x, gap = (
-        [0, 4e-4, 8e-4, 1.2e-3, 1.6e-3],
-        [0, 4.499035860655817e-06, 2.398457377049308e-05, 7.64219047131212e-05, 1.9175318033788922e-4],
-    )
-    scene = parse_scene(
-        {
-            "name": "turned",
-            "material": {"E": 70e9, "nu": 0.3, "plane": "stress"},
-            "friction": {"f": 0.7124858377764763},
-            "profile": {"kind": "tabulated", "x": x, "gap": gap},
-            "load": {
-                "P": 1374446.7859455342,
-                "Q": [-530437.5446132885, 530437.5446132885],
-                "sigma": [3178018449.2957535, -3178018449.2957535],
-            },
-            "fem": {"accuracy": 1e-3},
-        }
-    )
+    x = [0, 4e-4, 8e-4, 1.2e-3, 1.6e-3]
+    gap = [0, 4.499035860655817e-06, 2.398457377049308e-05, 7.64219047131212e-05, 1.9175318033788922e-4]
+    load = {"P": 1374446.7859455342, "Q": [-530437.5446132885, 530437.5446132885]}
+    load |= {"sigma": [3178018449.2957535, -3178018449.2957535]}
+    material, table = {"E": 70e9, "nu": 0.3, "plane": "stress"}, {"kind": "tabulated", "x": x, "gap": gap}
+    scene = plain(load, 0.7124858377764763, material, table, fem={"accuracy": 1e-3})
     solved, true = [], estimate.end_errors
     monkeypatch.setattr(estimate, "end_errors", lambda *given: solved.append(given) or true(*given))
     results = partialslip.run(scene, ["fem", "exact"]).results
@@ -207,17 +195,8 @@ def test_two_fits_of_an_end_are_apart_by_what_a_flat_bottom_leaves(monkeypatch):
 
     def apart(power):
         gap = 1e-6 / 0.02 / power * (x / 1e-3) ** power
-        scene = parse_scene(
-            {
-                "name": "flat-bottom",
-                "material": {"E": 70e9, "nu": 0.3},
-                "friction": {"f": 0.0},
-                "profile": {"kind": "tabulated", "x": x.tolist(), "gap": gap.tolist()},
-                "load": {"P": {2: 1.5e6, 6: 9.4e5}[power]},  # contact half-widths of about 1 mm
-                "fem": {"accuracy": 1e-2},
-            }
-        )
-        partialslip.run(scene, ["fem"])
+        load, table = {"P": {2: 1.5e6, 6: 9.4e5}[power]}, {"kind": "tabulated", "x": x, "gap": gap}  # a is about 1 mm
+        partialslip.run(plain(load, 0.0, (70e9, 0.3), table, fem={"accuracy": 1e-2}), ["fem"])
         solution, sizes = solved[-1][:2]
         return (solution.fits / solution.half_width / sizes[:2]).max()
 

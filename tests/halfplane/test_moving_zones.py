@@ -3,6 +3,7 @@ settings, beside the exact steady state."""
 
 import numpy as np
 import pytest
+import reversed_loads
 
 from partialslip import halfplane, load_scene, run
 from partialslip.halfplane.gradual_path.half_cycle import steady
@@ -20,10 +21,7 @@ INNER = {(0.85, 9.0): (0.963682, 0.535761, 5e-6), (0.9975, 7.2): (0.758333, 0.69
 
 
 def solved(Qf, sf, method, *settings):
-    f, P = SHEAR.friction.f, SHEAR.P
-    loads = {"Q": Qf * f * P, "sigma": sf * f * P0 / 2}
-    scene = load_scene("hertz-shear", [*(f"load.{key}={[-each, each]}" for key, each in loads.items()), *settings])
-    return run(scene, [method]).results[method]
+    return run(reversed_loads.scene(Qf, sf, *settings, name="hertz-shear"), [method]).results[method]
 
 
 def error_of_q(found, q):

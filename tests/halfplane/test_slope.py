@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 from digits import pressure
+from plain import plain as made
 
 import partialslip
 from partialslip import halfplane
@@ -199,12 +200,17 @@ def test_a_slope_of_the_wrong_sign_is_seen(monkeypatch):
 
 def test_where_slip_does_not_reverse_steps_do_not_matter():
     """Of loads that turn round, and only of those, many steps give another q than one."""
-    for Qf, sf, gf, turns in ((0.3, 4.0, 1.2, False), (-0.4, 2.0, 6.0, False), (0.0, 0.0, 22.0, True)):
+    plain, sloped = (
+        ((0.3, 4, 0, False), (0.75, 4.5, 0, True)),
+        ((0.3, 4, 1.2, False), (-0.4, 2, 6, False), (0, 0, 22, True)),
+    )
+    for Qf, sf, gf, turns in (*plain, *sloped):
         assert loading(UNIT, 1.0, 2 * P * Qf, sf, gf, bound=2).turns_round == turns
         cycle = [(Qf, sf / 2, gf / 2), (-Qf, -sf / 2, -gf / 2), (Qf, sf / 2, gf / 2)]
         one, many = (boundary_elements.march(HertzShape(), cycle, 160, steps)[3] for steps in (1, 24))
         apart = np.abs((one[2] - one[1]) - (many[2] - many[1])).max()
         assert (apart > 1e-3) == turns
+        assert gf or turns or apart < 1e-9
 
 
 # --- scenes
@@ -213,8 +219,7 @@ def test_where_slip_does_not_reverse_steps_do_not_matter():
 def scene(Q, sigma, slope, profile=None, P=None, **load):
     """A scene with loads in f P, f p0 and f p0/a."""
     profile = profile or {"kind": "hertz", "R": 0.01}
-    data = {"name": "slope", "material": {"E": 72e9, "nu": 0.33}, "friction": {"f": 0.3}, "profile": profile}
-    plain = partialslip.parse_scene({**data, "load": {"P": P or 1.27e5, **load}})
+    plain = made({"P": P or 1.27e5, **load}, material=(72e9, 0.33), profile=profile)
     pressed = halfplane.contact(plain)
     unit = 0.3 * pressed.p0
     loads = {"Q": 0.3 * pressed.P * np.array(Q), "sigma": unit * np.array(sigma)}

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from flats import beside_the_flat
+from plain import plain
 from varying_scenes import varying
 
 import partialslip
@@ -147,16 +148,8 @@ def test_slip_that_turns_round_as_the_loads_do():
 
 def test_cells_follow_every_kink_of_q1_and_q2():
     """Mean loads without tension: q2 is the first loading's, whose stick zone ends where dq has no kink."""
-    scene = partialslip.parse_scene(
-        {
-            "name": "mean",
-            "material": {"E": 70e9, "nu": 0.3},
-            "profile": {"kind": "hertz", "R": 0.02},
-            "friction": {"f": 0.4},
-            "load": {"a": 1e-3, "Q": [181245.73001, 483321.94669], "cycles": 2},
-            "fem": {"accuracy": 1e-4},
-        }
-    )
+    load = {"a": 1e-3, "Q": [181245.73001, 483321.94669], "cycles": 2}
+    scene = plain(load, 0.4, (70e9, 0.3), {"kind": "hertz", "R": 0.02}, fem={"accuracy": 1e-4})
     result = partialslip.run(scene, ["march"]).results["march"]
     cells, kink = result.traction.cells / result.a, np.sqrt(0.2)
 
