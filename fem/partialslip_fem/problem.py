@@ -240,6 +240,11 @@ class ScaledProblem:
         """The sharp ones of these points, for functions that are smooth over the ``length``."""
         return tuple(kink / self.length - self.origin for kink in self.friction.sharp_kinks(length * self.length))
 
+    @property
+    def coarsest(self) -> float:
+        """Fineness of the coarsest body, of which element sizes are."""
+        return max(part.fineness for part in self.parts)
+
     def bent(self, low: float, high: float) -> tuple[Array, Array]:
         """The ``kinks`` between two points, and by how much the gap's curvature jumps there, (k,) each."""
         kinks = np.array(self.kinks)

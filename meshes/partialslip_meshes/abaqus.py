@@ -4,6 +4,7 @@ A deck without parts is one scope of numbers and names. Parts have scopes of the
 copies. Sets of the assembly have members in instances, as INSTANCE=NAME or NAME.member.
 """
 
+import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -24,6 +25,7 @@ _CELLS = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
 _OF_BEAM = {"1": 2, "2": 3, "3": 2}  # fixed: nodes by the order of a beam
 # fixed: keywords that make or move nodes and elements
 _UNREAD = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "TRANSLATE", "SUBMODEL"}
+_KEYWORD = re.compile(r"[\w /+-]*$")
 _PARAMETER = re.compile(r'([^,="]+)(?:=\s*("[^"]*"|[^,]*))?')
 _FACE = re.compile(r"S([1-4])$")
 
@@ -89,11 +91,13 @@ def _cards(text: str) -> Iterator[_Card]:
     lines = [line.strip() for line in text.splitlines()]
     lines = [line for line in lines if line and not line.startswith("**")]
     starts = [number for number, line in enumerate(lines) if line.startswith("*")]
-    for start, stop in zip(starts, [*starts[1:], len(lines)], strict=True):
+    for start, stop in itertools.pairwise([*starts, len(lines)]):
         head, below = lines[start], start + 1
         while head.endswith(",") and below < stop:
             head, below = head + lines[below], below + 1
         keyword, _, rest = head[1:].partition(",")
+        if not _KEYWORD.match(keyword):
+            raise InputError(f"must have keywords and commas as in Abaqus; {head!r} has others")
         found = ((key.strip().upper(), value.strip().strip('"').strip()) for key, value in _PARAMETER.findall(rest))
         yield _Card(" ".join(keyword.upper().split()), {key: value for key, value in found if key}, lines[below:stop])
 

@@ -6,9 +6,10 @@ from plain import plain
 
 import partialslip
 from partialslip import plan
+from partialslip.friction.contact_line import ContactLine
 from partialslip.result import Traction, TractionAt
 from partialslip.run.judge import cell_means
-from partialslip_fem import solve, solving
+from partialslip_fem import solve
 
 ACCURACY = 1e-3
 LOW, HIGH = np.sqrt(0.2), np.sqrt(0.75)  # stick zones: of the first loading, to 0.8 f P, and of the cycle, by 0.5 f P
@@ -84,7 +85,7 @@ def test_a_run_that_goes_on_keeps_the_kinks(found):
 @pytest.mark.fault
 def test_kinks_left_out_are_seen(monkeypatch):
     """Deliberate fault: meshes that follow the ends of the change of q only."""
-    monkeypatch.setattr(solving, "shear_kinks", lambda *_: ())
+    monkeypatch.setattr(ContactLine, "kinks", lambda *_: [])
     assert off(solve(scene(), plan(scene()))).max() > 2e-3
 
 

@@ -8,8 +8,9 @@ import reversed_loads
 from plain import plain
 
 import partialslip
+from partialslip.friction import contact_line
 from partialslip.friction.zone_ends import StickInterval
-from partialslip_fem import adapt, estimate, locked, zones
+from partialslip_fem import estimate, grading, locked
 from partialslip_fem.locked import locked_in
 
 
@@ -133,7 +134,7 @@ def test_how_long_an_end_that_jumped_was_off_its_way_is_seen(monkeypatch):
     flat = {"kind": "flat-rounded", "R": 0.02, "b": 0.00077701467}
     scene = plain(load, 0.6243, (70e9, 0.4), flat, fem={"accuracy": 4e-4})
     exact = partialslip.run(scene, ["exact"]).results["exact"]
-    monkeypatch.setattr(adapt, "_AT_BENDS", 0.0)  # on meshes that are fine at the ends of the flat, the end hops
+    monkeypatch.setattr(grading, "_AT_BENDS", 0.0)  # on meshes that are fine at the ends of the flat, the end hops
     found, known = ratios(scene, exact)
     assert found.min() > 1
     assert known.max() <= scene.fem.accuracy
@@ -153,8 +154,8 @@ def test_an_end_that_came_back_to_where_it_turned_round_is_seen(monkeypatch):
     found, known = ratios(scene, exact)
     assert found.min() > 1
     assert known.max() <= scene.fem.accuracy
-    read = zones.read_stick_zone
-    monkeypatch.setattr(zones, "read_stick_zone", lambda *given: read(*given[:-1]))
+    read = contact_line.read_stick_zone
+    monkeypatch.setattr(contact_line, "read_stick_zone", lambda *given: read(*given[:-1]))
     found, _ = ratios(scene, exact)
     assert found.min() < 0.6
 

@@ -123,9 +123,3 @@ def test_finite_bodies_are_said_to_be_left_out(tmp_path, capsys):
     command = ["page", "hertz-shear", "--set", blocks[0], "--set", blocks[1], "--out", str(tmp_path / "out")]
     assert main(command) == 0
     assert f"t{says}\n" in capsys.readouterr().out
-
-
-def test_refused_in_one_line(tmp_path, refused):
-    said = refused("page", "flat-rounded", "--out", str(tmp_path / "out"))
-    assert 'profile.kind = "flat-rounded": must be "hertz" for a live page (closed form for Hertz only)' in said
-    assert not (tmp_path / "out").exists()

@@ -83,7 +83,7 @@ def moved_on(pressed_by=0.6):
     coarse = of_last.solve(None, (1e-2, 0.2))
     after = of_last.solve(coarse, (1e-3, 0.05))
     cells = after.vertices * last.length
-    before = unlike._solve_on(of_first, of_first.path, cells / first.length, None, Clock())
+    before = unlike._solve_on(of_first, of_first.path, cells / first.length, None)
     moved = []
     for scene, level in ((first, before), (last, after)):
         forces = (level.pressed.normal.x, level.pressed.tangential.x)

@@ -3,7 +3,6 @@
 Shear is constant on cells, refined towards the ends of the contact and of the computed stick zone.
 """
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -11,14 +10,14 @@ from functools import partial
 import numpy as np
 
 from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure
-from partialslip.friction.active_set import spread
+from partialslip.friction.contact_line import passing
 from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
-from partialslip.friction.load_path import Path, load_path, stretched
+from partialslip.friction.load_path import load_path, stretched
 from partialslip.friction.regime import permanent_zone, steady_state
 from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
-from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, sticking_zones, within
+from partialslip.friction.zone_ends import finest, sticking_zones
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
 from partialslip.halfplane.stress import SURFACE_REACH, along_surface
@@ -26,10 +25,11 @@ from partialslip.halfplane.tractions import CellTractions
 from partialslip.march import driver
 from partialslip.march.cell_stress import CellStresses
 from partialslip.march.cells import (
+    NEAR_ENDS,
+    cells_around,
     compliance,
+    contact_line,
     friction_on,
-    graded_cells,
-    nearest,
     norm_parts,
     on_cells,
     relative_change,
@@ -45,14 +45,10 @@ from partialslip.tools.bars import LEAST_SHEAR
 
 _MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # accuracy: (cell size at the ends, in a; growth)
 _CELLS, _SOMEWHERE = 4.0, 0.5  # accuracy: a zone of fewer cells is unresolved: the error of an end in cells
-_NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
-_SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
-_INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
+_AT_BENDS = 32.0  # cost: most size of cells at kinks of the coefficient of friction, over the size at the ends
 # cost: Excess of errors up to which the next mesh is halfway, which mostly divides them by 4 to 20; the same of q, q1
 # and q2 after the first step, when halfway meshes hardly reduce the estimates of these
 _NEARLY = 3.0, 0.7
-# cost: the same at kinks that neither q1 nor q2 has, and, at most, at kinks of the coefficient of friction
-_PASSING = 32.0
 _WORK = 5e11  # limit: cells^3 times load steps of a mesh
 _LEG = 6.0  # cost: work of a leg that is followed while cells touch and open, over that of a load step (measured)
 _HALVED = 1.7  # accuracy: growth that is less reduced is that of a halfway mesh: 2 times is usual, sqrt(2) halfway
@@ -102,19 +98,15 @@ class SimilarLevel(driver.Level):
         return (self.stick.left, self.stick.right) if self.stick else ()
 
     @property
-    def passing(self) -> list[float]:
-        """Kinks that neither q1 nor q2 has: out of phase these are -f p and f p beside the stick zone, where the kinks
-        of single load points pass by, if the pressure is constant. Kinks in the stick zone last."""
-        if not self.stick or not self.history or self.history.path.in_phase or self.history.path.presses_anew:
-            return []
-        return [kink for kink in self.kinks if not self.stick.left <= kink <= self.stick.right]
+    def passing(self) -> tuple[float, ...]:
+        """Kinks that neither q1 nor q2 has."""
+        return passing(self.kinks, self.stick, self.history)
 
 
 class SimilarBodies(driver.CellProblem[SimilarLevel]):
     """Half-planes of like materials, for :func:`partialslip.march.driver.march`; ``added`` as for
     :func:`partialslip.march.method.solve`."""
 
-    telling = ("m", "n")
     nearly = _NEARLY
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock, added: Added | None) -> None:
@@ -128,7 +120,10 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         self._friction = self.normal.within(scene.friction.sharp_kinks(self.length))
 
     def cells(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> Array:
-        return _cells(self._ends, self._inner, self._friction, level, *mesh)
+        ends = [*self._ends, *(level.zone if level else ())]
+        moving = level.passing if level else ()
+        kinks = [*self._inner, *(kink for kink in (level.kinks if level else ()) if kink not in moving)]
+        return cells_around(ends, mesh, 1.0, kinks, moving, self._friction, _AT_BENDS)
 
     def too_large(self, level: SimilarLevel, count: int) -> bool:
         history = level.history
@@ -144,9 +139,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         first = number == self.coarse
         choose = first or (steps_matter(stepped, self.scene.fem.accuracy) and not self.clock.limited)
         cells = self.cells(level, mesh)
-        found = _solve_level(
-            self.normal, self.path, self.start, cells, self.clock, choose, self.added, level.trail if level else None
-        )
+        found = _solve_level(self, cells, choose, level.trail if level else None)
         if first and found.history:
             self.path = found.history.path
         return replace(found, stepped=found.stepped or stepped, number=number, growth=mesh[1])
@@ -209,90 +202,30 @@ def add_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock:
     return replace(found, surface=surface, stress_at=StressAt(stresses.inside), cost=clock.cost())
 
 
-def _cells(
-    ends: list[float], inner: list[float], friction: list[float], level: SimilarLevel | None, size: float, growth: float
-) -> Array:
-    """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of
-    a larger size at ``inner`` kinks of q and at the kinks on that level, the largest at those that are passing.
-
-    Cells are small compared with the distance of neighbouring ends: q is steep in narrow slip zones and stick zones.
-    Each kink of the coefficient of ``friction`` is an end of a cell, and as many cells as ``growth`` tells lie
-    between two of them: no dip is left out.
-    """
-    fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
-    bends = apart(friction, _SMALLEST, fine.tolist())[len(fine) :]
-    gap = nearest(np.array([*fine, *bends]))
-    moving = level.passing if level else []
-    lasting = [kink for kink in (level.kinks if level else ()) if kink not in moving]
-    known = apart([*inner, *lasting], _INNER * size, fine.tolist())
-    passing = apart(moving, _PASSING * size, [*known, *bends])[len(known) + len(bends) :]
-    points = np.array([*known, *bends, *passing])
-    sizes = np.full(len(points), _PASSING * size)
-    sizes[: len(known)] = _INNER * size
-    sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap[: len(fine)], 1.0), _SMALLEST)
-    at_bends = slice(len(known), len(known) + len(bends))
-    sizes[at_bends] = np.minimum(sizes[at_bends], growth * gap[len(fine) :])
-    order = np.argsort(points)
-    return graded_cells(points[order], sizes[order], growth)
-
-
-def _solve_level(
-    normal: NormalLoads,
-    path: Path | None,
-    start: State | None,
-    vertices: Array,
-    clock: Clock,
-    choose: bool,
-    added: Added | None,
-    before: Trail | None,
-) -> SimilarLevel:
-    scene, frame = normal.scene, normal.frame
+def _solve_level(problem: SimilarBodies, vertices: Array, choose: bool, before: Trail | None) -> SimilarLevel:
+    """Solve on the cells between ``vertices``, and ``choose`` the load steps."""
+    normal, path, clock = problem.normal, problem.path, problem.clock
+    scene, frame, forces = normal.scene, normal.frame, normal.forces(normal.second, vertices)
     if not path:
-        return SimilarLevel(vertices, None, None, normal.forces(normal.second, vertices))
-    x = (vertices[1:] + vertices[:-1]) / 2
-    if start:
-        path = replace(path, before=on_cells(start.q, frame.places(vertices)) / scene.P)
+        return SimilarLevel(vertices, None, None, forces)
+    line, places, trail, stepped = contact_line(vertices), frame.places(vertices), None, Errors()
+    if problem.start:
+        path = replace(path, before=on_cells(problem.start.q, places) / scene.P)
     with clock.phase("compliance"):
         normally = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
-        tangential = normally + added(frame.places(vertices)) if added else normally
+        tangential = normally + problem.added(places) if problem.added else normally
     with clock.phase("contact"):
-        f = friction_on(scene.friction, frame.places(vertices))
-        moved = stretched(x * frame.a / scene.length, frame.centre / scene.length)
-
-        def zone(of: History) -> StickInterval:
-            if not of.path.presses_anew:
-                known = of.lasting, of.unsteady, of.stuck
-                return read_stick_zone(x, of.bound, of.change, vertices, lambda values: values, *known)
-            on = np.flatnonzero(of.bound > 0)
-            here, forces = of.of(on), partial(spread, where=on, count=len(x))
-            known = here.lasting, here.unsteady, here.stuck
-            found = read_stick_zone(x[on], here.bound, here.change, vertices, forces, *known)
-            return within(found, normal.common, vertices)
-
-        def errors(of: History, gradual: History) -> dict[str, float]:
-            return of_steps(of, gradual, (zone(of), zone(gradual)), np.diff(vertices), normal.largest.a / frame.a)
-
+        f = friction_on(scene.friction, places)
+        moved = stretched(line.x * frame.a / scene.length, frame.centre / scene.length)
         if path.presses_anew:
-            presses = normal.presses(vertices, normally)
-            trail = Trail(x, before)
-            along = partial(coulomb_varying_pressure.march, x, tangential, moved, f, presses, trail=trail)
+            presses, trail = normal.presses(vertices, normally), Trail(line.x, before)
+            along = partial(coulomb_varying_pressure.march, line.x, tangential, moved, f, presses, trail=trail)
+            errors = partial(of_steps, line, half_width=normal.largest.a / frame.a, common=normal.common)
             history, stepped = follow_or_step(along, path, scene.fem.accuracy, errors if choose else None)
         else:
-            trail = None
             history = coulomb_constant_pressure.march(tangential, moved, normal.forces(frame, vertices), f, path)
-            stepped = {}
-        inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
-        inner.append(history.turning(x))
-        forces = normal.forces(normal.second, vertices)
-        return SimilarLevel(
-            vertices,
-            history,
-            zone(history),
-            forces,
-            tuple(itertools.chain.from_iterable(inner)),
-            stepped,
-            trail=trail,
-        )
+        stick, kinks = line.stick_zone(history, normal.common), tuple(line.kinks(history))
+        return SimilarLevel(vertices, history, stick, forces, kinks, stepped, trail=trail)
 
 
 def _mesh_errors(normal: NormalLoads, level: SimilarLevel, before: SimilarLevel, first: bool) -> dict[str, float]:
@@ -318,8 +251,8 @@ def _mesh_errors(normal: NormalLoads, level: SimilarLevel, before: SimilarLevel,
     growth = level.growth
     soft = max(_CUBIC_OF_SOFT * growth**3, _SQUARE_OF_SOFT * growth**2)
     between = np.maximum(_CUBIC * growth**3, soft / _stiffness(level))
-    between *= np.minimum(_NEAR * gap, 1.0)
-    part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
+    between *= np.minimum(NEAR_ENDS * gap, 1.0)
+    part = _CARRIED if NEAR_ENDS * gaps[1] < 1 else _MOVED
     halfway = not first and before.growth < _HALVED * level.growth
     changed = _CHANGED_HALFWAY if halfway else _CHANGED[not first]
     known = np.maximum(unseen, np.maximum(part[halfway] * moved, between))

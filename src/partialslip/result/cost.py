@@ -182,29 +182,3 @@ class Clock:
             start_rss_mb=memory.start_mb,
             peak_rss_unknown=memory.unknown,
         )
-
-
-class Pace:
-    """CPU seconds of meshes one after the other, and whether the next one fits the allowance of a ``clock``.
-
-    The next mesh is taken to grow as the last two did.
-    """
-
-    def __init__(self, clock: Clock) -> None:
-        self._clock, self._left = clock, clock.remaining()
-        self._took: list[float] = []
-
-    def took(self) -> None:
-        """Attribute the seconds since the last call to one mesh."""
-        if self._clock.limited:
-            left = self._clock.remaining()
-            self._took.append(self._left - left)
-            self._left = left
-
-    def fits(self, times: float = 1.0) -> bool:
-        """Return whether ``times`` the seconds of the next mesh are left; true without an allowance."""
-        if not self._clock.limited:
-            return True
-        before, last = [self._took[-1], *self._took][-2:]
-        growth = max(last / before, 1.0) if before > 0 else 1.0
-        return times * growth * last <= self._left

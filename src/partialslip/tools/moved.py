@@ -7,7 +7,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 
 _MOVED = {
-    "run": "judge",
+    "run": "judge methods",
     "report": "record",
     "codes": "score export",
     "study": "batch map live fatigue",
@@ -16,7 +16,7 @@ _MOVED = {
     "result": "rig",
     "scene": "plan gradual units",
     "tools": (
-        "allowance bars methods arrays errors groups threads telling frame shown strictjson inputfile seal origin "
+        "allowance bars arrays errors groups threads telling frame shown strictjson inputfile seal origin "
         "convergence output"
     ),
 }
