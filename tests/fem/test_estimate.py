@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from plain import plain
+from spying import spied
 
 import partialslip
 from partialslip.run.judge.measures import cell_means
@@ -100,15 +101,14 @@ def test_estimate_knows_of_the_coarser_body():
 @pytest.mark.parametrize(("name", "steep"), [("hertz-shear", 1.0), ("flat-rounded", None)])
 def test_how_steeply_pressure_begins_is_found(monkeypatch, name, steep):
     """As a multiple of Hertz's; corners near the ends of the contact make it steep."""
-    solutions, true = [], estimate.end_errors
-    monkeypatch.setattr(estimate, "end_errors", lambda found, *rest: solutions.append(found) or true(found, *rest))
+    solved = spied(monkeypatch, estimate, "end_errors")
     exact = partialslip.run(partialslip.load_scene(name, ["fem.accuracy=1e-3"])).results["exact"]
     a, x = exact.a, exact.a * np.sin(np.linspace(0, np.pi / 2, 2001))
     p, *_ = exact.traction.at(x)
     root, *_ = exact.traction.at(np.array([a * (1 - 1e-7)]))
     known = root[0] / np.sqrt(1e-7) / np.sqrt(np.trapezoid(p**2, x) / a) / np.sqrt(3)
     assert known == pytest.approx(steep or 8.1, rel=0.02)
-    assert estimate._steepness(solutions[-1]) == pytest.approx(known, rel=0.02)
+    assert estimate._steepness(solved[-1][0]) == pytest.approx(known, rel=0.02)
 
 
 @pytest.mark.slow
@@ -122,8 +122,7 @@ def test_a_kink_where_an_end_turned_round_within_an_element_is_seen(monkeypatch)
     load |= {"sigma": [3178018449.2957535, -3178018449.2957535]}
     material, table = {"E": 70e9, "nu": 0.3, "plane": "stress"}, {"kind": "tabulated", "x": x, "gap": gap}
     scene = plain(load, 0.7124858377764763, material, table, fem={"accuracy": 1e-3})
-    solved, true = [], estimate.end_errors
-    monkeypatch.setattr(estimate, "end_errors", lambda *given: solved.append(given) or true(*given))
+    solved = spied(monkeypatch, estimate, "end_errors")
     results = partialslip.run(scene, ["fem", "exact"]).results
     solution, *_, at_kinks = [given for given in solved if given[-1].any()][-1]
     a, exact = solution.half_width, results["exact"]
@@ -146,8 +145,7 @@ def test_a_kink_where_an_end_turned_round_within_an_element_is_seen(monkeypatch)
 def test_the_place_of_an_end_in_its_element_counts(monkeypatch):
     """The same mesh, stretched so that the end of a Hertz contact moves from a vertex into the element: the error of a
     grows, and elements of the order below do not see it. Deliberate fault: ends are taken to be at vertices."""
-    solved, true = [], adapt.neighbour
-    monkeypatch.setattr(adapt, "neighbour", lambda *given: solved.append(given) or true(*given))
+    true, solved = adapt.neighbour, spied(monkeypatch, adapt, "neighbour")
     scene = partialslip.load_scene("hertz-shear", ["load.Q=[0, 0]", "fem.accuracy=1e-3"])
     results = partialslip.run(scene, ["fem", "exact"]).results
     solution, problem, width, clock = solved[-1]
@@ -177,8 +175,7 @@ def test_the_place_of_an_end_in_its_element_counts(monkeypatch):
 
 def test_an_end_of_the_contact_is_not_known_better_than_two_fits_agree(monkeypatch):
     """See tests/friction/test_stick_zone.py for how far both are off."""
-    solved, true = [], estimate.end_errors
-    monkeypatch.setattr(estimate, "end_errors", lambda *given: solved.append(given) or true(*given))
+    true, solved = estimate.end_errors, spied(monkeypatch, estimate, "end_errors")
     partialslip.run(partialslip.load_scene("hertz-shear", ["load.Q=[0, 0]", "fem.accuracy=1e-2"]), ["fem"])
     solution, *rest = solved[-1]
     apart = np.array([1e-2, 2e-2])
@@ -200,8 +197,7 @@ def test_two_fits_of_an_end_are_apart_by_what_a_flat_bottom_leaves(monkeypatch):
         solution, sizes = solved[-1][:2]
         return (solution.fits / solution.half_width / sizes[:2]).max()
 
-    solved, true = [], estimate.end_errors
-    monkeypatch.setattr(estimate, "end_errors", lambda *given: solved.append(given) or true(*given))
+    solved = spied(monkeypatch, estimate, "end_errors")
     assert 0 < 10 * apart(2) < apart(6) < 0.1
     monkeypatch.setattr(solving, "NEAREST", solving.VERTICES)
     assert apart(6) == 0

@@ -61,14 +61,6 @@ def test_inner_slip_zone(Qf, sf, method):
     assert max(found.estimate["m"], found.estimate["n"]) < 5e-3
 
 
-@pytest.mark.parametrize("method", ["march", pytest.param("fem", marks=pytest.mark.slow)])
-def test_load_steps_do_not_matter(method):
-    """On straight legs at constant pressure."""
-    one, many = (solved(0.55, 7.0, method, "fem.accuracy=1e-3", f"load.steps={count}") for count in (1, 5))
-    for key in ("m", "n"):
-        assert getattr(one, key) == pytest.approx(getattr(many, key), abs=1e-10 * one.a)
-
-
 # the left end has just begun to take points back when the leg ends: by finite elements it shows at two nodes
 TAKES_BACK = 0.55, 4.4
 

@@ -133,24 +133,16 @@ def test_a_loop_of_a_contact_that_slides_is_refused(dQ):
 # --- given profiles and pressures
 
 
-def own_hertz():
-    return contact_of(lambda x: PRESSED.p0 * np.sqrt((PRESSED.a - x) * (PRESSED.a + x)) / PRESSED.a, PRESSED.a)
+UNEVEN = PRESSED.a * np.array([0.0, 0.01, 0.3, 0.35, 0.9, 1.4, 2.0])
+ALIKE = {
+    "own": lambda: contact_of(lambda x: PRESSED.p0 * np.sqrt((PRESSED.a - x) * (PRESSED.a + x)) / PRESSED.a, PRESSED.a),
+    "no flat": lambda: Contact(PRESSED.a, PRESSED.P, Punch(0.0)),
+    "table": lambda: contact(scene(tabulated(parabola, PRESSED.a / 7.3, 20))),
+    "uneven table": lambda: contact(scene({"kind": "tabulated", "x": UNEVEN, "gap": parabola(UNEVEN)})),
+}
 
 
-def no_flat():
-    return Contact(PRESSED.a, PRESSED.P, Punch(0.0))
-
-
-def table_of_a_parabola():
-    return contact(scene(tabulated(parabola, PRESSED.a / 7.3, 20)))
-
-
-def uneven_table_of_a_parabola():
-    x = PRESSED.a * np.array([0.0, 0.01, 0.3, 0.35, 0.9, 1.4, 2.0])
-    return contact(scene({"kind": "tabulated", "x": x.tolist(), "gap": parabola(x).tolist()}))
-
-
-@pytest.mark.parametrize("make", [own_hertz, no_flat, table_of_a_parabola, uneven_table_of_a_parabola])
+@pytest.mark.parametrize("make", ALIKE.values(), ids=ALIKE)
 def test_hertz_by_other_ways(make):
     """A callable, a flat of no width, and tables of a parabola (which are exact) give Hertz to 12 digits."""
     pressed = make()
