@@ -11,7 +11,7 @@ import partialslip
 from partialslip import load_scene, parse_scene
 from partialslip.friction import coulomb_coupled
 from partialslip.friction.even_gap import PARABOLA, EvenGap
-from partialslip.march import punch_growth, unlike
+from partialslip.march import driver, punch_growth, unlike
 from partialslip.march.punch_growth import PunchGrowth, goodman_stick_zone, relative
 from partialslip.march.unlike import dundurs
 from partialslip.result import Clock
@@ -155,9 +155,9 @@ def test_compliance_of_unlike_half_planes_is_reciprocal():
 
 @pytest.fixture(autouse=True, scope="module")
 def coarse():
-    """Two meshes: what is tested does not need more."""
+    """Few meshes: what is tested does not need more."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(unlike, "_MESHES", unlike._MESHES[:2])
+        patch.setattr(driver, "MESHES", driver.MESHES[:5])
         yield
 
 
