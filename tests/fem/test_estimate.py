@@ -31,24 +31,12 @@ def ratio(name, *overrides):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("asked", [1e-5, 2e-5])
-def test_estimate_bounds_the_error_by_less_than_6_times_it(asked):
-    """The estimate is to be below the error at one end in twenty; the error has no least size, so that the bound is
-    one on average."""
-    cases = [(*scene, f"fem.accuracy={asked}") for scene in SCENES]
-    known, share = np.transpose([ratio(*case) for case in cases])
-    assert known.min() > 1
-    assert np.exp(np.log(known).mean()) < 6
-    assert share.max() < 1
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("accuracy", ["1e-3", "1e-5", "1e-6", "1e-7"])
-def test_estimate_is_right_at_every_accuracy(accuracy):
+@pytest.mark.parametrize(("accuracy", "least"), [(1e-3, 0.5), (2e-5, 1), (1e-5, 1), (1e-6, 0.5), (1e-7, 0.5)])
+def test_estimate_is_right_at_every_accuracy(accuracy, least):
     """No error is far above its estimate. How far it lies below is bounded on average: an error that happens to pass
     through zero says nothing about the estimate."""
     known, share = np.transpose([ratio(*scene, f"fem.accuracy={accuracy}") for scene in SCENES])
-    assert known.min() > 1 / 2
+    assert known.min() > least
     assert np.exp(np.log(known).mean()) < 6
     assert share.max() < 1
 

@@ -148,33 +148,25 @@ def test_calculix(ending, off):
     assert any("dq may be of the opposite sign" in note for note in turned.notes)
 
 
+def times(*factors):
+    return lambda table, _: table * factors
+
+
 MISTAKES = {
     "shifted by half a cell": (lambda t, h: t + np.array([h / 2, 0, 0]), "left right p", "middle is at x = 0.0034 a"),
-    "q of the other sign": (
-        lambda t, _: t * [1, 1, -1],
-        "q dQ",
-        "dq may be of the opposite sign: correct with --factors 1,1,-1",
-    ),
-    "half a cycle": (lambda t, _: t * [1, 1, 0.5], "q dQ", "dq may be of half a cycle: correct with --factors 1,1,2"),
+    "q of the other sign": (times(1, 1, -1), "q dQ", "dq may be of the opposite sign: correct with --factors 1,1,-1"),
+    "half a cycle": (times(1, 1, 0.5), "q dQ", "dq may be of half a cycle: correct with --factors 1,1,2"),
     "without the right half": (lambda t, _: t[: len(t) // 2], "a p q P", "of the scene's P"),
     "a hole": (lambda t, _: np.delete(t, slice(24, 52), axis=0), "p q", ""),
     "p and q exchanged": (lambda t, _: np.column_stack([t[:, 0], t[:, 2], t[:, 1]]), "p q P dQ", "of the scene's P"),
-    "mirrored": (
-        lambda t, _: t * [-1, 1, 1],
-        "m n q",
-        "on the other side: is the sign of x, or of the tension, reversed?",
-    ),
-    "pressure scaled": (lambda t, _: t * [1, 1.1, 1], "p P", "p adds up to 1.1 of the scene's P"),
-    "shear scaled": (lambda t, _: t * [1, 1, 1.05], "q dQ", "dq adds up to 1.05 of the scene's dQ"),
-    "less friction": (
-        lambda t, _: t * [1, 1, 0.987],
-        "q",
-        "|dq|/(2 p) is 0.2961 in the slip zones, but the scene's f",
-    ),
-    "in MPa": (lambda t, _: t * [1, 1e-6, 1e-6], "p q P dQ", "MPa: correct with --factors 1,1e+06,1e+06"),
+    "mirrored": (times(-1, 1, 1), "m n q", "on the other side: is the sign of x, or of the tension, reversed?"),
+    "pressure scaled": (times(1, 1.1, 1), "p P", "p adds up to 1.1 of the scene's P"),
+    "shear scaled": (times(1, 1, 1.05), "q dQ", "dq adds up to 1.05 of the scene's dQ"),
+    "less friction": (times(1, 1, 0.987), "q", "|dq|/(2 p) is 0.2961 in the slip zones, but the scene's f"),
+    "in MPa": (times(1, 1e-6, 1e-6), "p q P dQ", "MPa: correct with --factors 1,1e+06,1e+06"),
     # no point lies within the contact, so that nothing is known of p and q there
-    "in mm and MPa": (lambda t, _: t * [1e3, 1e-6, 1e-6], "a", "correct with --factors 0.001,1e+06,1e+06"),
-    "in mm": (lambda t, _: t * [1e3, 1, 1], "a", "x may be in mm: correct with --factors 0.001,1,1"),
+    "in mm and MPa": (times(1e3, 1e-6, 1e-6), "a", "correct with --factors 0.001,1e+06,1e+06"),
+    "in mm": (times(1e3, 1, 1), "a", "x may be in mm: correct with --factors 0.001,1,1"),
 }
 
 
