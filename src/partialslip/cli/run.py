@@ -23,9 +23,9 @@ from partialslip.cli.common import (
     print_outcome,
     seconds,
 )
-from partialslip.run.methods import METHODS
 from partialslip.tools.allowance import Allowance
 from partialslip.tools.errors import InputError
+from partialslip.tools.methods import METHODS
 
 if TYPE_CHECKING:
     from partialslip.result import Result

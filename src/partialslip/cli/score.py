@@ -20,9 +20,9 @@ from partialslip.cli.common import (
     origin,
     print_outcome,
 )
-from partialslip.run.methods import REFERENCES
 from partialslip.tools.bars import LARGEST, Asked, asked
 from partialslip.tools.errors import InputError
+from partialslip.tools.methods import REFERENCES
 
 _T = TypeVar("_T")
 

@@ -31,6 +31,7 @@ _SAMPLES = 32  # accuracy: points in each other cell, between which the force is
 
 
 def _alone(forces: Array) -> Array:
+    """Forces on cells of which each has one node."""
     return forces
 
 

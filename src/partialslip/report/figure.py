@@ -10,11 +10,11 @@ import numpy as np
 from partialslip.report.rows import shown_half_planes
 from partialslip.result import Result
 from partialslip.run import Run
-from partialslip.run.methods import METHODS
 from partialslip.scene import Friction, Scene, Tabulated
 from partialslip.scene.measured import read_points
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
+from partialslip.tools.methods import METHODS
 from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 from partialslip.result import Result
 from partialslip.result.record import ResultRecord
-from partialslip.run.methods import METHODS
 from partialslip.scene import Scene
 from partialslip.scene.gradual import may_turn_round
 from partialslip.scene.plan import reduced
+from partialslip.tools.methods import METHODS
 
 ALL_EFFECTS = "all effects"  # name of the result in which no effect is forced off
 
