@@ -4,7 +4,9 @@ import itertools
 
 import numpy as np
 import pytest
+import reversed_loads
 from flats import beside_the_flat
+from plain import plain
 from varying_scenes import varying
 
 import partialslip
@@ -67,13 +69,14 @@ def test_steady_below_the_mean_load_bound_ratchets_above(level, steady):
     """The bound is 0.4711 f P for dQ/(2 f P) = 0.3, dsigma/(f p0) = 4."""
     fP = 314159.26535897935
     Q = [(level * 0.471092 + turn * 0.3) * fP for turn in (-1, 1)]
-    result = marched("hertz-large-tension", ROUGH, f"load.Q={Q}", "load.sigma=[-4e8, 4e8]", "load.cycles=30")
+    loads = ROUGH, f"load.Q={Q}", "load.sigma=[-4e8, 4e8]", "load.cycles=30"
+    exact, result = partialslip.run(
+        partialslip.load_scene("hertz-large-tension", loads), ["exact", "march"]
+    ).results.values()
     exact_m, exact_n = 0.749058362969, 0.370590356334
     off = max(abs(result.m / result.a - exact_m), abs(result.n / result.a - exact_n))
     assert (off < 2e-3) == steady
     assert result.last_cycle_change < 1e-4  # ratcheting tractions repeat themselves, too: slip does not
-    scene = partialslip.load_scene("hertz-large-tension", [f"load.Q={Q}", "load.sigma=[-4e8, 4e8]"])
-    exact = partialslip.run(scene, ["exact"]).results["exact"]
     assert (exact.regime != "ratchets") == steady
 
 
@@ -112,12 +115,8 @@ TURNS = [
 def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
     """Marching and the exact method agree, whether slip turns round or not: then m is another one than that of a single
     step."""
-    fP, half = 314159.26535897935, sf * 1e8
-    loads = ["fem.accuracy=1e-4", f"load.Q=[{-Qf * fP}, {Qf * fP}]", f"load.sigma=[{-half}, {half}]"]
-    one, gradual = (
-        partialslip.run(partialslip.load_scene("hertz-large-tension", [*loads, f"load.steps={k}"]), ["exact", "march"])
-        for k in (1, 12)
-    )
+    scenes = [reversed_loads.scene(Qf, sf, "fem.accuracy=1e-4", f"load.steps={k}") for k in (1, 12)]
+    one, gradual = (partialslip.run(each, ["exact", "march"]) for each in scenes)
     exact, scene = one.results["exact"], one.scene
     (compared,) = gradual.comparisons.values()
     assert gradual.reference == "exact"
@@ -132,31 +131,18 @@ def test_slip_that_turns_round_on_a_gradual_way(Qf, sf, turns):
 @pytest.mark.slow
 def test_slip_that_turns_round_as_the_loads_do():
     """Points that finally slip to the right are first pushed to the left: a flat remembers."""
-    scene = partialslip.load_scene("flat-rounded")
-    fP, fp0 = scene.friction.f * scene.P, scene.friction.f * contact(scene).p0
-    loads = [ROUGH, f"load.Q={[-0.375 * fP, 0.375 * fP]}", f"load.sigma={[-4.125 * fp0, 4.125 * fp0]}"]
-    one, gradual = (
-        partialslip.run(partialslip.load_scene("flat-rounded", [*loads, f"load.steps={k}"]), ["march"]) for k in (1, 4)
-    )
-    assert all(each.results["march"].counts["events"] for each in (one, gradual))
-    once = one_step_zone(contact(scene), scene.friction.f, 0.75 * fP, 8.25 * fp0).n
-    found = [each.results["march"] for each in (one, gradual)]
+    scenes = [reversed_loads.scene(0.375, 8.25, ROUGH, f"load.steps={k}", name="flat-rounded") for k in (1, 4)]
+    found, scene = [partialslip.run(each, "march")["march"] for each in scenes], scenes[0]
+    assert all(each.counts["events"] for each in found)
+    once = one_step_zone(contact(scene), scene.friction.f, scene.load.dQ, scene.load.dsigma).n
     assert min(abs(each.n - once) / each.a for each in found) > 0.01
     assert found[0].n == pytest.approx(found[1].n, abs=1e-6 * found[0].a)
 
 
 def test_cells_follow_every_kink_of_q1_and_q2():
     """Mean loads without tension: q2 is the first loading's, whose stick zone ends where dq has no kink."""
-    scene = partialslip.parse_scene(
-        {
-            "name": "mean",
-            "material": {"E": 70e9, "nu": 0.3},
-            "profile": {"kind": "hertz", "R": 0.02},
-            "friction": {"f": 0.4},
-            "load": {"a": 1e-3, "Q": [181245.73001, 483321.94669], "cycles": 2},
-            "fem": {"accuracy": 1e-4},
-        }
-    )
+    load = {"a": 1e-3, "Q": [181245.73001, 483321.94669], "cycles": 2}
+    scene = plain(load, 0.4, (70e9, 0.3), {"kind": "hertz", "R": 0.02}, fem={"accuracy": 1e-4})
     result = partialslip.run(scene, ["march"]).results["march"]
     cells, kink = result.traction.cells / result.a, np.sqrt(0.2)
 
@@ -179,10 +165,8 @@ def test_cells_follow_every_kink_of_q1_and_q2():
 @pytest.mark.parametrize(("Qf", "sf"), [(0.5, 2.8), pytest.param(0.75, 4.5, marks=pytest.mark.slow)])
 def test_legs_are_followed_where_slip_turns_round(Qf, sf):
     """Event by event; one step remains if slip does not turn round. Load steps are stages, and change nothing."""
-    fP, half = 314159.26535897935, sf * 1e8
-    loads = ["fem.accuracy=1e-3", f"load.Q=[{-Qf * fP}, {Qf * fP}]", f"load.sigma=[{-half}, {half}]"]
-    found = marched("hertz-large-tension", *loads)
-    many = marched("hertz-large-tension", *loads, "load.steps=16")
+    scenes = [reversed_loads.scene(Qf, sf, ROUGH, f"load.steps={k}") for k in (1, 16)]
+    found, many = (partialslip.run(each, "march")["march"] for each in scenes)
     assert found.counts["events"] > 0
     assert abs(found.m - many.m) < 1e-9 * many.a
     assert abs(found.n - many.n) < 1e-9 * many.a

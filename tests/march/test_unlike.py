@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from plain import plain
 from scipy.special import xlogy
 
 import partialslip
@@ -268,24 +269,13 @@ def test_nodes_that_open_on_the_way_do_not_ratchet():
     """If tractions repeat, every node that stays in contact slips by the same over a cycle, so that a place which never
     slips forbids it. What a node moves while it is open is no slip: here the contact wanders in the middle of a leg."""
     gripped = {"P": 200e3, "Q": (10e3, 70e3), "sigma": (50e6, 350e6), "steps": 8}
-    steel, titanium = {"E": 205e9, "nu": 0.3}, {"E": 116e9, "nu": 0.32}
-    scene = partialslip.parse_scene({
-        "name": "pad", "material": {"upper": steel, "lower": titanium}, "profile": {"kind": "hertz", "R": 0.025},
-        "friction": {"f": 0.6}, "load": gripped, "fem": {"accuracy": 1e-2},
-    })  # fmt: skip
+    steel_on_titanium = {"upper": {"E": 205e9, "nu": 0.3}, "lower": {"E": 116e9, "nu": 0.32}}
+    scene = plain(gripped, 0.6, steel_on_titanium, {"kind": "hertz", "R": 0.025}, fem={"accuracy": 1e-2})
     assert partialslip.run(scene, "march")["march"].regime == "large tension"
 
 
-STIFF = partialslip.parse_scene(
-    {
-        "name": "stiff-on-aluminium",
-        "material": {"E": 70e9, "nu": 0.3, "upper": {"E": 2e12, "nu": 0.3}},
-        "profile": {"kind": "hertz", "R": 0.05},
-        "friction": {"f": 0.87},
-        "load": {"P": 1e6},
-        "fem": {"accuracy": 1e-4},
-    }
-)
+STIFF_ON_ALUMINIUM = {"E": 70e9, "nu": 0.3, "upper": {"E": 2e12, "nu": 0.3}}
+STIFF = plain({"P": 1e6}, 0.87, STIFF_ON_ALUMINIUM, {"kind": "hertz", "R": 0.05}, fem={"accuracy": 1e-4})
 
 
 def closed():

@@ -3,8 +3,8 @@
 import csv
 import io
 
-import numpy as np
 import pytest
+from tables import sampled, written
 
 from partialslip import load_scene, run
 from partialslip.cli import main
@@ -19,18 +19,7 @@ def table(tmp_path, monkeypatch):
     """Write a table of tractions under a name, in an empty folder."""
     monkeypatch.chdir(tmp_path)
     exact = run(load_scene("hertz-shear"), "exact")["exact"]
-    x = np.linspace(-1.2, 1.2, 61) * exact.a
-
-    def write(name):
-        np.savetxt(
-            tmp_path / name,
-            np.column_stack([x, *exact.traction.at(x)[:2]]),
-            delimiter=",",
-            header="x,p,dq",
-            comments="",
-        )
-
-    return write
+    return lambda name: written(tmp_path / name, sampled(exact, 61, 1.2))
 
 
 def formulas(text):
