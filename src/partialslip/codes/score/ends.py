@@ -7,7 +7,8 @@ value above zero and the first that is zero. How far, depends on what the values
 Within this bracket one model is fitted to the nearest values: the average of (e - x)^(1/2) (c0 + c1 (e - x) + ...).
 All ends, and all averages, that fit as well as noise of the size of the best fit's misfit allows are possible. A second
 reading leaves the nearest values out: what blurs an end over some length, as friction by a penalty does, misleads the
-first more than the second. The interval of both is the uncertainty.
+first more than the second. The interval of both is the uncertainty. Where the values fade out, as they do where the
+blur takes many points, the end may be anywhere from where they begin to.
 """
 
 from collections.abc import Sequence
@@ -168,6 +169,7 @@ class _Reading:
     """Readings of the right end of the zone from point ``first`` to ``last``."""
 
     def __init__(self, x: Array, values: Array, last: int, first: int, least: float) -> None:
+        self.whole = first  # point where the zone begins
         inner = values[first : last + 1][::-1]  # a fit reaches no farther than the values rise
         (fallen,) = np.nonzero(inner < np.maximum.accumulate(inner) - 2 * least)
         first = last - int(inner[: fallen[0] if len(fallen) else len(inner)].argmax())
@@ -177,8 +179,8 @@ class _Reading:
         self.risen = first + int(risen[-1] if len(risen) else 0)
         # what counts as zero, in c: the values near the end are about the averages of c (end - x)^(1/2)
         begin = self._begin(_NEAR[0])
-        zero = max(least, ZERO_LEVEL * float(values.max()))
-        self.zero = zero / float(values[begin]) * float(x[last] - x[begin]) ** 0.5
+        self.least = max(least, ZERO_LEVEL * float(values.max()))
+        self.zero = self.least / float(values[begin]) * float(x[last] - x[begin]) ** 0.5
         self.more = self.spacing if last + 1 == len(x) else 0.0
 
     def possible(self, averages: Sequence[Average]) -> tuple[Average, ...]:
@@ -192,9 +194,8 @@ class _Reading:
         found = near._replace(low=min(near.low, low), high=max(near.high, high))  # no more than the bracket is known
         average = possible[0]
         far = self._far(average, high, 1)
-        # a square root falls to half over these three points, the average of one to somewhat less
-        fades = bool(self.values[self.last - 1] < self.values[max(self.last - 4, 0)] / 4)
-        if far is not None and (far.better(near) or (fades and far.best < low)):
+        fade = self._fade(possible)
+        if far is not None and (fade is not None or far.better(near)):
             found = self._blurred(average, found, far, high)
         elif far is not None:
             # what misleads halves with twice the distance, so that the end is off by twice what it moves, if it does
@@ -206,7 +207,11 @@ class _Reading:
                 )
             else:
                 found = found._replace(low=min(found.low, inner))
-        drifted = self._drifted(possible) if drifts else None
+        if fade is not None:
+            best = min(max(found.best, fade), high)
+            found = found._replace(best=best, low=min(found.low, fade), high=max(found.high, high))
+        # where an end drifted, the cube root of the values ends like a square root
+        drifted = self._drifted(possible) if drifts and self._fade(possible, 1 / 3) is None else None
         if drifted and drifted.width < found.width:
             return drifted, possible
         return found, possible
@@ -216,6 +221,20 @@ class _Reading:
         low = min(each.begins(self.x, self.last) for each in averages)
         high = max(each.begins(self.x, self.last + 1) + each.hidden(self.zero, self.spacing) for each in averages)
         return low, high + self.more
+
+    def _fade(self, averages: Sequence[Average], power: float = 1.0) -> float | None:
+        """Where the values to a ``power`` begin to fade out, m; None if they end like a square root averaged.
+
+        Secants from the first zero grow less steep inward where values end like a square root, and steeper at first
+        where they fade, as (1 - tanh(slip/delta)) does. A faded end lies between the steepest secant's two ends.
+        """
+        points = np.arange(self.last, self.whole - 1, -1)
+        distances = float(self.x[min(self.last + 1, len(self.x) - 1)]) + self.more - self.x[points]
+        least = self.least**power
+        slopes = (np.maximum(self.values[points], 0.0) ** power - least) / distances
+        (fallen,) = np.nonzero(slopes < np.maximum.accumulate(slopes) - 2 * least / distances)
+        rising = int(slopes[: fallen[0] if len(fallen) else len(points)].argmax())
+        return float(self.x[points[slopes.argmax()]]) if rising > max(each.rises for each in averages) else None
 
     def _begin(self, count: int) -> int:
         """First point of a window of ``count`` points, or more: the values there are well above the noise."""

@@ -22,6 +22,15 @@ class Average(NamedTuple):
     kind: Kind
     points: int = 1
 
+    @property
+    def rises(self) -> int:
+        """Most points beside the end of a square root at which secants from the first zero grow steeper inward.
+
+        One of values at points; those of an average over w spacings grow over at most five quarters of w more.
+        """
+        width = self.points - 1 + _INTEGRALS[self.kind]
+        return 1 + width + width // 4
+
     def begins(self, x: Array, at: int) -> float:
         """Left end, m, of the piece of the contact line that tells in the value at point ``at`` of ``x`` (n,), m."""
         points = _points(x, np.array([at - self.points // 2]))
