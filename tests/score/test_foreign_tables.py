@@ -104,7 +104,7 @@ def test_centre_auto_puts_x_in_the_middle(tmp_path, capsys):
     ("table", "columns", "said"),
     [
         ("a,b,c\n1,2,3", None, "columns 'a', 'b', 'c': must be x; p or Fn"),
-        ("1,2,3\n4,5,6", None, "line 1: must be a header line"),
+        ("1,2,3,4\n4,5,6,7", None, "line 1: must be a header line"),
         ("x,p,CSHEAR1,TAUR\n1,2,3,4", None, "column 'q': must be there once, not 2 times"),
         ("x,p,dq\n1,2,3", {"x": "x", "p": "p", "dq": "s"}, "--columns s: .*has the columns 'x', 'p', 'dq'"),
         ("x,p,dq\n1,2,3", {"x": "9", "p": "p", "dq": "dq"}, "--columns 9: "),

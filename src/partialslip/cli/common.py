@@ -62,7 +62,8 @@ def add_method(parser: argparse.ArgumentParser, text: str, **more: Any) -> None:
 def add_columns(parser: argparse.ArgumentParser) -> None:
     """Add ``--columns``, which :func:`columns_of` parses."""
     parser.add_argument("--columns", metavar="NAMES",
-                        help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1")  # fmt: skip
+                        help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1, "
+                        "or q2=CSHEAR1 for the shear at load point 2")  # fmt: skip
 
 
 def columns_of(text: str | None) -> dict[str, str] | None:

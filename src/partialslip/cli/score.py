@@ -39,19 +39,23 @@ def add(commands: Commands) -> None:
             "partialslip score fretting-aluminium --template > mine.csv",
             "partialslip score fretting-aluminium mine.csv --bar 1e-2",
             "partialslip score hertz-shear job.frd --factors 1e-3,1e6,1e6",
+            "partialslip score hertz-shear first.rpt second.rpt --where part=FLAT-1",
         ],
         failure="a bar missed",
         unjudged="headline quantities not judged, with --bar",
     )
     add_scene(scores)
-    scores.add_argument("file", metavar="FILE", nargs="?",
+    scores.add_argument("files", metavar="FILE", nargs="*", default=[],
                         help="tractions: a table (.csv, .txt, .tsv, .rpt), .frd or .dat, or .vtu, .vtk, .xdmf, .xmf, "
-                        ".msh, .med, .e, .exo or .ex2")  # fmt: skip
+                        ".msh, .med, .e, .exo or .ex2; or one file for each load point")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
     scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
                         help="multiply x, p and q by these factors, after the units of the scene or of the columns: "
                         "1e-3,1e6,1e6 for mm and MPa in an SI scene; -1 changes the sign")  # fmt: skip
     add_columns(scores)
+    scores.add_argument("--where", metavar="COLUMN=VALUE", action="append",
+                        help="keep the rows in which a column has this value: surface=FLAT; step=A,B are those of load "
+                        "points 1 and 2")  # fmt: skip
     scores.add_argument("--centre", choices=("given", "auto"), default="given",
                         help="auto puts x = 0 in the middle of the contact (default: given)")  # fmt: skip
     scores.add_argument("--order", metavar="1|2", default="1",
@@ -86,14 +90,14 @@ def _score(options: argparse.Namespace) -> int:
         raise InputError(f"--order {options.order}: must be 1 or 2")
     scene = partialslip.load_scene(options.scene, options.overrides)
     if options.template:
-        if options.file is not None:
-            raise InputError(f"--template {options.file}: must go without a file: remove {options.file}")
+        if options.files:
+            raise InputError(f"--template {options.files[0]}: must go without a file: remove {options.files[0]}")
         from partialslip.codes.score.csvfile import csv_template
         from partialslip.halfplane import contact
 
         sys.stdout.write(csv_template(scene, contact(scene).a))
         return 0
-    if options.file is None:
+    if not options.files:
         raise InputError("FILE: missing: must be a file with tractions; --template prints a table to fill in")
 
     from partialslip.cli.consoles import working
@@ -101,36 +105,48 @@ def _score(options: argparse.Namespace) -> int:
     from partialslip.report import write_run
     from partialslip.run.judge.reference import reference
 
-    file = Path(options.file)
-    check(file)  # before a folder is created
-    beside = file.with_suffix(".frd")  # has the mesh of a .dat
-    mesh = beside if file.suffix.lower() == ".dat" and beside.is_file() else None
-    known = {"file": file, "mesh": mesh, "factors": factors, "reference": options.reference or reference(scene).method}
+    files = [Path(file) for file in options.files]
+    for file in files:
+        check(file)  # before a folder is created
+    beside = files[0].with_suffix(".frd")  # has the mesh of a .dat
+    mesh = beside if files[0].suffix.lower() == ".dat" and beside.is_file() else None
+    known = {"files": None, **{f"file{k or ''}": file for k, file in enumerate(files)}, "mesh": mesh, "factors": factors,
+             "reference": options.reference or reference(scene).method}  # fmt: skip
 
     def usual() -> dict[str, object]:
         method = known["reference"] if options.reference is None else reference(scene).method
         return known | {"factors": (1, 1, 1), "reference": method}
 
-    name = f"{scene.name}-{file.stem}"
+    name = f"{scene.name}-{'-'.join(file.stem for file in files)}"
     with (
         folder_if_wanted(options, "score", name, scene, known, usual) as (folder, elsewhere),
         working(scene.name) as tell,
     ):
         outcome = partialslip.score(
             scene,
-            file,
+            files,
             bar=bar,
             reference=options.reference,
             factors=(factors[0], factors[1], factors[2]),
             order=int(options.order),
             at=(at[0], at[1]) if at else None,
             columns=columns_of(options.columns),
+            where=_where(options.where),
             centre=options.centre,
             kind=options.kind,
             progress=tell,
         )
-        files = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
-    return print_outcome(outcome, options, files, elsewhere=elsewhere)
+        written = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
+    return print_outcome(outcome, options, written, elsewhere=elsewhere)
+
+
+def _where(options: list[str] | None) -> dict[str, str]:
+    """Parse the values of ``--where``."""
+    pairs = [option.partition("=") for option in options or ()]
+    for option, (name, _, value) in zip(options or (), pairs, strict=True):
+        if not name.strip() or not value.strip():
+            raise InputError(f"--where {option}: must be COLUMN=VALUE, for example surface=FLAT")
+    return {name.strip(): value.strip() for name, _, value in pairs}
 
 
 def _bar(text: str) -> Asked:
