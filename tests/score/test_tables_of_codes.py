@@ -74,7 +74,7 @@ def test_pressure_and_shear_in_two_files(tmp_path):
 def test_files_that_do_not_fit_are_refused(tmp_path):
     p, q, few = files(tmp_path, p__csv=text(ROWS[:, :2], "x,p"), q__csv=text(ROWS[:, :2], "x,p"),
                       few__csv=text(ROWS[3:, [0, 2]], "x,q"))  # fmt: skip
-    assert "must be a file of pressure and one of shear" in line_of(score, SCENE, [p, q])
+    assert "must be a file of p and one of q" in line_of(score, SCENE, [p, q])
     assert "141 and 138 rows: must be at the same x, or have the same nodes" in line_of(score, SCENE, [p, few])
     (whole,) = files(tmp_path, whole__csv=text(ROWS, "x,p,q"))
     assert "3 states: must be 2, one for each load point of the cycle" in line_of(score, SCENE, [whole] * 3)

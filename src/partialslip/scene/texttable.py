@@ -6,7 +6,7 @@ Every line of a file belongs to the heading, is a row, or is left out with a not
 import csv
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -54,7 +54,7 @@ class TextTable(NamedTuple):
     """
 
     names: list[str]
-    columns: list[list[str] | Array]
+    columns: Sequence[list[str] | Array]
     lines: list[int]
     head: int = 0
     before: list[str] = []  # noqa: RUF012
@@ -108,8 +108,7 @@ class _Form(NamedTuple):
 
 
 def decoded(data: bytes, origin: str) -> tuple[str, str]:
-    """Text of a file in UTF-8, UTF-16 or Latin-1 (as Windows has it), with newlines as line ends, and a note if it is in
-    Latin-1.
+    """Text of a file in UTF-8, UTF-16 or Latin-1, with newlines as line ends, and a note if it is in Latin-1.
 
     Raises
     ------

@@ -104,10 +104,9 @@ def columns_of(table: TextTable, asked: Asked, chosen: Mapping[str, str] | None 
     scaled = sorted({name for each in wanted.values() for name in asked.scales if _is_over(each.text, name)})
     if scaled and any(each.unit == asked.scales.get(name) for each in wanted.values() for name in scaled):
         notes.append(f"normalised columns: times the scene's {', '.join(_scale(n, asked, units) for n in scaled)}")
-    kept, told = _of_one(
-        table, used, values, wanted["x"].unit or units.size("m") if "x" in wanted else 1.0, asked.origin
-    )
-    notes += told
+    length = wanted["x"].unit or units.size("m") if "x" in wanted else 1.0
+    kept, left_out = _of_one(table, used, values, length, asked.origin)
+    notes += left_out
     node = next((place_of(name, [each.lower() for each in names]) for name in NODES
                  if name in map(str.lower, names)), None)  # fmt: skip
     labels = None if node is None else [str(value) for value, one in zip(table.columns[node], kept, strict=True) if one]
@@ -161,9 +160,11 @@ def where(table: TextTable, asked: Mapping[str, str], origin: str) -> list[TextT
 
 def _kinds(table: TextTable, place: int) -> list[str]:
     """Values of a column, each once."""
-    return list(
-        dict.fromkeys(f"{each:.10g}" if isinstance(each, float) else str(each) for each in table.columns[place])
-    )
+    return list(dict.fromkeys(map(_shown, table.columns[place])))
+
+
+def _shown(value: object) -> str:
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
 def _same(one: str, other: str) -> bool:
@@ -189,15 +190,15 @@ def _of_one(
 
     Raises InputError with what to type to keep some of them.
     """
-    every, notes = np.ones(len(table.lines), bool), []
+    every, notes = np.ones(len(table.lines), bool), list[str]()
     if "x" not in values:
         return every, notes
     x, pressed = values["x"], np.any([column != 0 for name, column in values.items() if name != "x"], axis=0)
     for k, name in enumerate(table.names):
         if k in used or not _TELLS.fullmatch(split_unit(name)[0].strip()) or len(kinds := _kinds(table, k)) < 2:
             continue
-        own = np.array([kinds.index(str(each)) if isinstance(each, str) else kinds.index(f"{each:.10g}")
-                        for each in table.columns[k]])  # fmt: skip
+        places = {kind: at for at, kind in enumerate(kinds)}
+        own = np.array([places[_shown(each)] for each in table.columns[k]])
         told = np.unique(own[pressed & every])
         if len(told) == 1:
             every &= own == told[0]
@@ -220,10 +221,10 @@ def _of_one(
             inside = table.numbers(k, origin)[every][(x >= low) & (x <= high)]
             length = split_unit(name)[1] or unit
             if np.ptp(inside) * length > _FLAT * (high - low):
-                kinds = [f"{each:.10g}" for each in np.unique(inside)[::-1]]
+                kinds = list(map(_shown, np.unique(inside)[::-1].tolist()))
                 keep = f"keep one, as by {_type(name, kinds[0])}" if len(kinds) <= _FEW else "keep those of the contact"
-                told = f"points with p lie apart across x: must be on one line; {name} is {_listed(kinds)}"
-                raise InputError(f"{origin}: {told}: {keep}")
+                apart = f"points with p lie apart across x: must be on one line; {name} is {_listed(kinds)}"
+                raise InputError(f"{origin}: {apart}: {keep}")
     kept = table.only(np.flatnonzero(every).tolist())
     labels = (Label(name, k + 1, list(kept.columns[k])) for k, name in enumerate(table.names) if k not in used)
     advice = f"keep one, as by {_type('{name}', '{kept}')}"

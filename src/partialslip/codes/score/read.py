@@ -1,7 +1,7 @@
 """Read tractions from files; the suffix tells the format."""
 
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -66,7 +66,8 @@ def read_tractions(
     if results and len(files) > 1:
         raise InputError(f"{results[0]}: must be the only file: it has the load points")
     asked = Asked(origin, anew, scene.friction.f > 0, scales=_Scales(scene))
-    faces, units, notes = False, scene.units, ()
+    faces, units = False, scene.units
+    notes: tuple[str, ...] = ()
     if results:
         table, faces, stated = _calculix(files[0], scene, at)
         if stated:
@@ -126,7 +127,7 @@ class _Scales(Mapping[str, float]):
     def __contains__(self, name: object) -> bool:
         return name in ("a", "p0", "fp0", "2fp0")
 
-    def __iter__(self):  # noqa: ANN204
+    def __iter__(self) -> Iterator[str]:
         return iter(("a", "p0", "fp0", "2fp0"))
 
     def __len__(self) -> int:
@@ -136,14 +137,14 @@ class _Scales(Mapping[str, float]):
 def _pressed(values: dict[str, Array], factor: float) -> tuple[dict[str, Array], tuple[str, ...]]:
     """``values`` with pressures above zero, and a note where a compressive stress was turned; not where the ``factor``
     of the pressure says what its sign is."""
-    below = [name for name in (*NORMAL, *FIRST.values()) if name in values and factor > 0 and -values[name].min(initial=0.0)
-             > values[name].max(initial=0.0) and values[name].sum() < 0]  # fmt: skip
+    pressures = [name for name in (*NORMAL, *FIRST.values()) if name in values and factor > 0]
+    below = [name for name in pressures if values[name].sum() < 0 and -values[name].min() > values[name].max()]
     notes = tuple(f"{name} is below zero: read as a compressive stress, its sign turned" for name in below)
     return values | {name: -values[name] for name in below}, notes
 
 
 def _whole(values: dict[str, Array], scene: Scene) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """``values`` of the whole contact, where they are of one half, from x = 0 on, of tractions that are even in x, and a
+    """``values`` of the whole contact, where they are of one half, beside x = 0, of tractions that are even in x, and a
     note."""
     x, p = values["x"], np.abs(values["p"])
     even = scene.even and not any(map(any, scene.load.tension)) and (scene.mirrored or not scene.friction.f)
@@ -184,7 +185,7 @@ def _of_numbers(columns: Mapping[str, Array]) -> TextTable:
 
 
 def _calculix(file: Path, scene: Scene, at: tuple[int, int] | None) -> tuple[TextTable, bool, Units | None]:
-    """Results of CalculiX as a table, whether they are means over faces, and the units of the deck if it states them."""
+    """Results of CalculiX as a table, whether they are means over faces, and the units that the deck states."""
     load, origin, suffix = scene.load, str(file), file.suffix.lower()
     load_points = LoadPoints(*load.ends, len(load.points), every=not load.in_phase)
     if scene.only_pressed:

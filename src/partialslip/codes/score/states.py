@@ -56,7 +56,8 @@ def joined(parts: Sequence[tuple[str, Columns]], asked: Asked, scene: Scene) -> 
         (only,) = states
         normal = next(name for name in NORMAL if name in only.values)
         order = ("x", normal, *[name for name in only.values if name not in ("x", normal)])
-        return Columns({name: only.values[name] for name in order}, only.made_of, notes, _SHEARS[normal] in only.values)
+        moment = any(columns.moment for _, columns in parts)
+        return Columns({name: only.values[name] for name in order}, only.made_of, notes, moment)
     return _cycle(states, asked, scene, notes)
 
 
@@ -120,7 +121,7 @@ def _beside(one: _State, other: _State) -> _State:
     has, other_has = set(one.values) - {"x"}, set(other.values) - {"x"}
     if has & other_has or not (has and other_has):
         raise InputError(
-            f"{one.name} and {other.name}: must be a file of pressure and one of shear, or both in each; or give --columns"
+            f"{one.name} and {other.name}: must be a file of p and one of q, or both in each; or give --columns"
         )
     if "x" not in one.values:
         one, other = other, one
