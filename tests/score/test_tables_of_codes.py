@@ -67,6 +67,11 @@ def test_pressure_and_shear_in_two_files(tmp_path):
     by_node = [text(np.column_stack([NODES, ROWS[:, :2]]), "Node,x,CPRESS"),
                text(np.column_stack([NODES, ROWS[:, 2]])[::-1], "Node,CSHEAR1")]  # fmt: skip
     check(files(tmp_path, p__csv=by_node[0], q__csv=by_node[1]))
+    apart = [
+        text(np.column_stack([NODES, ROWS[:, 0]])[::-1], "NODE X", " "),
+        text(np.column_stack([NODES, ROWS[:, 1:]]), "NODE PRES TAUR", " ") + "MINIMUM VALUES\nNODE 1 2\nVALUE 0. 1.\n",
+    ]
+    check(files(tmp_path, x__lis=apart[0], pq__lis=apart[1]), "left out: 3 lines of sums or extremes")
     four = files(tmp_path, p1__csv=p, q1__csv=text(FIRST[:, [0, 2]], "x,CSHEAR1"), p2__csv=p, q2__csv=q)
     assert check(four).traction.q1 is not None
 
@@ -106,7 +111,8 @@ def report(blocks, names=("COORD.COOR1", "CPRESS", "CSHEAR1"), summary=True):
                   'Output sorted by column "Node Label".', "",
                   f"Field Output reported at nodes for part: {part}", ""]  # fmt: skip
         lines += ["".join(f"{each:>16}" for each in ("Node", *names)),
-                  "".join(f"{each:>16}" for each in ("Label", *["@Loc 1"] * len(names))), "-" * 16 * (len(names) + 1)]  # fmt: skip
+                  "".join(f"{each:>16}" for each in ("Label", *["@Loc 1"] * len(names))),
+                  "-" * 16 * (len(names) + 1)]  # fmt: skip
         lines += [f"{k + 1:16d}" + "".join(f"{value:16.6g}" for value in row) for k, row in enumerate(rows.tolist())]
         if summary:
             for word, of in (("Minimum", rows.min(0)), ("Maximum", rows.max(0)), ("Total", rows.sum(0))):

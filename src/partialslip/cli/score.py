@@ -110,8 +110,12 @@ def _score(options: argparse.Namespace) -> int:
         check(file)  # before a folder is created
     beside = files[0].with_suffix(".frd")  # has the mesh of a .dat
     mesh = beside if files[0].suffix.lower() == ".dat" and beside.is_file() else None
-    known = {"files": None, **{f"file{k or ''}": file for k, file in enumerate(files)}, "mesh": mesh, "factors": factors,
-             "reference": options.reference or reference(scene).method}  # fmt: skip
+    known = {f"file{k or ''}": file for k, file in enumerate(files)} | {
+        "files": None,
+        "mesh": mesh,
+        "factors": factors,
+        "reference": options.reference or reference(scene).method,
+    }
 
     def usual() -> dict[str, object]:
         method = known["reference"] if options.reference is None else reference(scene).method

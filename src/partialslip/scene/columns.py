@@ -4,10 +4,15 @@ import re
 
 from partialslip.scene.units import LENGTHS
 
+#: Lengths by name, in lower case, m.
+LENGTH_WORDS = {
+    **LENGTHS, **dict.fromkeys(("micron", "microns"), 1e-6),
+    **{f"{prefix}met{end}": size for prefix, size in {"micro": 1e-6, "milli": 1e-3, "nano": 1e-9}.items()
+       for end in ("er", "re", "ers", "res")},
+}  # fmt: skip
 #: Units by name, in lower case, in SI units.
 SI_FACTORS = {
-    **LENGTHS, "micron": 1e-6, "microns": 1e-6, "micrometer": 1e-6, "micrometre": 1e-6, "micrometers": 1e-6,
-    "micrometres": 1e-6, "millimeter": 1e-3, "millimetre": 1e-3, "millimeters": 1e-3, "millimetres": 1e-3,
+    **LENGTH_WORDS,
     "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "psi": 6894.757293168, "ksi": 6894757.293168,
     "n/m": 1.0, "n/mm": 1e3, "n/m^2": 1.0, "n/mm^2": 1e6, "n/mm2": 1e6, "n/m2": 1.0, "n/um^2": 1e12,
     "n/mm\N{SUPERSCRIPT TWO}": 1e6, "n/m\N{SUPERSCRIPT TWO}": 1.0,
@@ -25,3 +30,13 @@ def split_unit(name: str) -> tuple[str, float | None]:
     parts = _BRACKETS.match(name)
     unit = parts["unit"].strip().lower() if parts else ""
     return (parts["name"], SI_FACTORS[unit]) if parts and unit in SI_FACTORS else (name, None)
+
+
+def place_of(name: str, names: list[str]) -> int | None:
+    """Index of the column ``name``, with or without unit, or number from 1, among ``names``; None if there is none, or
+    more than one."""
+    places = [k for k, each in enumerate(names) if name in (each, split_unit(each)[0])]
+    places = places or [k for k, each in enumerate(names) if name.lower() == each.lower()]
+    if not places and name.isdigit() and 1 <= int(name) <= len(names):
+        places = [int(name) - 1]
+    return places[0] if len(places) == 1 else None

@@ -4,12 +4,12 @@ The gap is the integral of a slope that is linear between points one smoothing l
 The slope must not decrease. Of all such gaps the nearest one to the points is taken, by least squares.
 """
 
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, NoReturn
 
 import msgspec
 import numpy as np
 
-from partialslip.scene.points import column_units, read_points
+from partialslip.scene.points import columns_of, is_named_gap, read_points
 from partialslip.scene.table import Positive, Table
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _COARSEST, _MOST = 3, 1000  # accuracy: intervals and points of a table
 _SURE = 5.0  # accuracy: standard deviations of a mean over a smoothing length that are not taken for noise
+_FOLDED = 0.2  # limit: of one side of a trace: largest other side that is taken for a part of an even gap
 _ROUNDING = 1e-12  # accuracy: misfit, relative to the largest gap, that is not taken for noise
 # msgspec 0.20 fails on a union of a number and a tuple of fixed length
 ColumnUnit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=2, max_length=2)]
@@ -28,22 +29,27 @@ ColumnUnit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=
 class ProfileFile(Table, frozen=True, kw_only=True):
     """Keys of a profile from a file.
 
-    ``file`` has the columns x and gap, of one half of an even gap if x begins at 0; ``unit`` (m) is that of its
-    numbers, or of each column (default: the units in the heading of the file, such as ``x [mm], gap [um]``, else the
-    scene's unit of length); ``smooth`` (m) is the smoothing length, and ``noise`` (m) the standard deviation of the
-    gaps (default: estimated).
+    ``file`` has the columns x and gap, or heights, of one half of an even gap if x begins at 0; ``columns`` names them
+    or numbers them from 1 where there are more. ``unit`` (m) is that of its numbers, or of each column (default: the
+    units in the heading of the file, such as ``x [mm], gap [um]``, else the scene's unit of length); ``smooth`` (m) is
+    the smoothing length, and ``noise`` (m) the standard deviation of the gaps (default: estimated). With ``centre`` =
+    "auto", x of a trace that begins at 0 is from its lowest point on, wherever that is; less than a fifth beside it is
+    of an even gap, too.
     """
 
     file: Annotated[str, msgspec.Meta(min_length=1)]
     smooth: Positive
     unit: ColumnUnit | None = None
     noise: Positive | None = None
+    columns: Annotated[tuple[int | str, ...], msgspec.Meta(min_length=2, max_length=2)] | None = None
+    centre: Literal["auto", "given"] = "auto"
 
 
 class Measured(Table, frozen=True, kw_only=True):
-    """How a table was made from a file: number of ``points``, ``unit`` of the columns x and gap (m), smoothing length
-    ``smooth`` (m), standard deviation ``noise`` of the gaps (m), ``offset`` of the gaps (m), which has no effect, and
-    ``misfit``, the root mean square difference between points and table (m)."""
+    """How a table was made from a file: number of ``points``, ``unit`` of the columns x and gap (m; below zero for
+    heights), smoothing length ``smooth`` (m), standard deviation ``noise`` of the gaps (m), ``offset`` of the gaps (m),
+    which has no effect, ``misfit``, the root mean square difference between points and table (m), numbers of the
+    ``columns``, from 1, and the place in the file that is x = 0, ``centre`` (m)."""
 
     file: str
     points: int
@@ -52,6 +58,18 @@ class Measured(Table, frozen=True, kw_only=True):
     noise: float
     offset: float
     misfit: float
+    columns: tuple[int, int] = (1, 2)
+    centre: float = 0.0
+
+    def read(self) -> tuple[Array, Array]:
+        """Return x and gap of the points (n,) each, m; on one side where they are of an even gap.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read.
+        """
+        return _folded(*read_points(self.file, self.unit, self.columns, self.centre))
 
 
 class _Fit(NamedTuple):
@@ -77,8 +95,13 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
         If the file is no table of two columns, its heading has other units than ``keys`` or names units that cannot be
         read, no convex gap follows the points within the noise, or x begins at 0 away from the lowest point.
     """
-    unit = column_units(keys.file, keys.unit, length)
-    x, gap = read_points(keys.file, unit)
+    columns, unit = columns_of(keys.file, keys.unit, length, keys.columns)
+    x, gap = read_points(keys.file, unit, columns)
+    if np.polyfit((x - x.mean()) / np.ptp(x), gap, 2)[0] < 0 and not is_named_gap(keys.file, columns[1]):
+        unit = (unit[0], -unit[1])  # heights
+        x, gap = read_points(keys.file, unit, columns)
+    centre = _lowest(x, gap, keys.smooth) if keys.centre == "auto" and x[0] == 0 else 0.0
+    x, gap = _folded(*read_points(keys.file, unit, columns, centre))
     # the slope at x = 0 is free: the points tell whether it is that of an even gap
     free, turning = (_fitted(x, gap, keys.smooth, convex, even=False) for convex in (False, True))
     fit = _fitted(x, gap, keys.smooth, True) if x[0] == 0 else turning
@@ -101,6 +124,8 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
             "noise": noise,
             "offset": float(fit.at.min()),
             "misfit": float(np.sqrt(np.mean((gap - fit.at) ** 2))),
+            "columns": list(columns),
+            "centre": centre,
         },
     }
 
@@ -133,12 +158,14 @@ def refitted(scene: "AnyScene", count: int, seed: int = 0, smooth: float | None 
     known: Measured | None = getattr(scene.profile, "measured", None)
     if known is None:
         raise InputError("profile: must be from a file (profile.file) to refit noisy copies")
-    x, _ = read_points(known.file, known.unit)
-    true, random = scene.profile.gap_at(x), np.random.default_rng(seed)
+    x, _ = read_points(known.file, known.unit, known.columns)
+    true, random = scene.profile.gap_at(x - known.centre), np.random.default_rng(seed)
+    smooth, mirrored = smooth or known.smooth, scene.profile.even and known.centre > 0
     found = []
     for _ in range(count):
         noisy = true + known.noise * random.standard_normal(len(x))
-        fit = _fitted(x, noisy, smooth or known.smooth, True)
+        centre = _mirror(x, noisy, smooth, known.centre) if mirrored else known.centre
+        fit = _fitted(*_folded(x - centre, noisy), smooth, True)
         found.append(scene.replace(profile={"x": fit.x, "gap": fit.gap - fit.gap.min()}))
     return found
 
@@ -152,13 +179,60 @@ def smoothest(known: Measured) -> float:
     InputError
         If the file cannot be read.
     """
-    x, gap = read_points(known.file, known.unit)
+    x, gap = known.read()
     noise, smooth = max(known.noise, _ROUNDING * float(np.ptp(gap))), known.smooth
     while round((x[-1] - x[0]) / (2 * smooth)) >= _COARSEST:
         if _off(x, gap - _fitted(x, gap, 2 * smooth, True).at, 2 * smooth)[1] > _SURE * noise:
             break
         smooth *= 2
     return smooth
+
+
+def _folded(x: Array, gap: Array) -> tuple[Array, Array]:
+    """Points of one side of an even gap, of which less than a fifth are beside x = 0 on the other side; other points as
+    they are."""
+    if not -_FOLDED * x[-1] < x[0] < 0:
+        return x, gap
+    order = np.argsort(np.abs(x), kind="stable")
+    folded = np.abs(x)[order]
+    folded[0] = 0.0  # where the even gap begins
+    return folded, gap[order]
+
+
+def _lowest(x: Array, gap: Array, smooth: float) -> float:
+    """Place of the lowest point of a trace that begins at 0, m; 0 if it is there, or beside the trace.
+
+    The points tell whether one slope more, at x = 0, follows them better than an even gap.
+    """
+    free, even = (_fitted(x, gap, smooth, True, each) for each in (False, True))
+    spare = max(len(x) - len(free.x) - 1, 1)
+    scatter = max(float(np.sqrt(np.sum((gap - free.at) ** 2) / spare)), _ROUNDING * float(np.ptp(gap)))
+    more = float(np.sum((gap - even.at) ** 2) - np.sum((gap - free.at) ** 2))
+    lowest = _turning(free)
+    if more <= (_SURE * scatter) ** 2 or not x[0] < lowest < x[-1]:
+        return 0.0
+    return _mirror(x, gap, smooth, lowest) if lowest < _FOLDED * (x[-1] - lowest) else lowest
+
+
+def _mirror(x: Array, gap: Array, smooth: float, lowest: float) -> float:
+    """Place near ``lowest`` at which points of both sides follow one even gap best, m."""
+
+    def misfit(centre: float) -> float:
+        folded, of = _folded(x - centre, gap)
+        return float(np.sum((of - _fitted(folded, of, smooth, True, True).at) ** 2))
+
+    from scipy.optimize import minimize_scalar  # imports slowly
+
+    bounds = (max(lowest - smooth, x[1]), min(lowest + smooth, _FOLDED * x[-1] / (1 + _FOLDED)))
+    return float(minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": 1e-5 * smooth}).x)
+
+
+def _turning(fit: _Fit) -> float:
+    """Place of the lowest point of a ``fit``, m: where its slope, linear between middles of intervals, is zero."""
+    step, slopes = fit.x[1] - fit.x[0], np.diff(fit.gap) / np.diff(fit.x)
+    bent = slopes[1:] - slopes[:-1]
+    at = int(np.clip(np.searchsorted(slopes, 0.0), 1, len(bent)))
+    return float(fit.x[at] + step / 2 - slopes[at] * step / bent[at - 1] if bent[at - 1] > 0 else fit.x[at])
 
 
 def _fitted(x: Array, gap: Array, smooth: float, convex: bool, even: bool | None = None) -> _Fit:
@@ -203,10 +277,7 @@ def _integrated(at: Array, knots: Array, times: int) -> Array:
 
 def _refuse_mirror(fit: _Fit, keys: ProfileFile) -> NoReturn:
     """Raise InputError: the ``fit``, whose slope at x = 0 is free, follows the points better than an even one."""
-    step, slopes = fit.x[1] - fit.x[0], np.diff(fit.gap) / np.diff(fit.x)
-    bent = slopes[1:] - slopes[:-1]
-    at = int(np.clip(np.searchsorted(slopes, 0.0), 1, len(bent)))
-    lowest = fit.x[at] + step / 2 - slopes[at] * step / bent[at - 1] if bent[at - 1] > 0 else fit.x[at]
+    lowest = _turning(fit)
     raise InputError(
         f"profile.file: {keys.file}: x begins at 0, and the lowest point is at about {lowest:.3g} m: must be at 0 for "
         "one half of an even gap; begin the file there, or let x begin below 0 for a gap of both sides, or, if it is "

@@ -1,20 +1,25 @@
-"""Files of points: two columns, x and gap, and the units that their heading states."""
+"""Files of points: the columns x and gap, or heights, and the units that their heading states."""
 
 import re
+from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.scene.columns import LENGTH_WORDS, place_of
 from partialslip.scene.table import LARGEST, SMALLEST
+from partialslip.scene.texttable import TextTable, decoded, read_table
 from partialslip.scene.units import LENGTHS
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
-from partialslip.tools.inputfile import read_text
+from partialslip.tools.inputfile import read_bytes
 
 _LARGEST = 20_000_000  # limit: bytes of a file of points
 _FEWEST = 10  # limit: points
 _COLUMNS = 2  # fixed: x and gap
 _ROUNDING = 1e-12  # accuracy: difference of units, relative, that is rounding
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
+# fixed: first words of the names of columns
+_ALONG = {"x", "length", "distance", "position", "pos", "lateral", "way"}
+_GAPS = {"gap", "depth", "z", "height", "profile", "h"}
 _BRACKETS = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
 _WORD = re.compile(r"[^\W\d_]+")
 _CELLS = re.compile(r"[,;\t]|\s{2,}")
@@ -27,8 +32,17 @@ _IN_FULL = re.compile(
 )
 
 
-def column_units(file: str, given: float | tuple[float, ...] | None, length: float) -> tuple[float, float]:
-    """Return the units of the columns x and gap of ``file``, in ``length`` (m).
+class PointColumns(NamedTuple):
+    """Columns of a file of points: their numbers from 1, x first, and their units, m; that of heights is negative."""
+
+    numbers: tuple[int, int]
+    unit: tuple[float, float]
+
+
+def columns_of(
+    file: str, given: float | tuple[float, ...] | None, length: float, chosen: tuple[int | str, ...] | None = None
+) -> PointColumns:
+    """Return the columns x and gap of ``file``, and their units in ``length`` (m).
 
     Parameters
     ----------
@@ -36,18 +50,63 @@ def column_units(file: str, given: float | tuple[float, ...] | None, length: flo
     given : float or tuple of float or None
         ``profile.unit``, of both columns or of each, in ``length``.
     length : float
+    chosen : (int or str, int or str), optional
+        ``profile.columns``, names or numbers from 1; by default those of a file of two, or those that are named so.
 
     Raises
     ------
     InputError
-        If ``given`` is not that of the heading, nothing is given and the heading names units that cannot be read, or
-        the heading names x as the second column.
+        If columns are not found, ``given`` is not that of the heading, nothing is given and the heading names units
+        that cannot be read, or the heading names x as the second column.
     """
-    lines = _heading(file)
-    if swapped := next((line for line in lines if _is_swapped(line)), ""):
+    table = _table(file)
+    x, gap = _places(table, file, chosen)
+    lines = table.before
+    if len(table.names) > _COLUMNS:
+        lines = [f"{table.names[x]}; {table.names[gap]}"] if table.head else []
+    elif not chosen and (swapped := next((line for line in lines if _is_swapped(line)), "")):
         raise InputError(f"profile.file: {file}: heading {swapped.strip()!r:.60}: the columns must be x, then gap")
+    units = _units(file, lines, given, length)
+    return PointColumns((x + 1, gap + 1), units)
+
+
+def is_named_gap(file: str, column: int) -> bool:
+    """Whether ``column`` of ``file``, from 1, has a name that says that it is no height."""
+    table = _table(file)
+    return table.head > 0 and "gap" in table.names[column - 1].lower()
+
+
+def _table(file: str) -> TextTable:
+    origin = f"profile.file: {file}"
+    return read_table(decoded(read_bytes(file, _LARGEST), origin)[0], origin, loose=True)
+
+
+def _places(table: TextTable, file: str, chosen: tuple[int | str, ...] | None) -> tuple[int, int]:
+    """Indices of the columns x and gap."""
+    names, shown = table.names, ", ".join(map(repr, table.names))[:100]
+    if chosen:
+        places = [place_of(str(each), names) for each in chosen]
+        for each, place in zip(chosen, places, strict=True):
+            if place is None:
+                raise InputError(f"profile.columns: {each!r}: must be one of {shown}, once, or a number from 1")
+        return tuple(places)  # type: ignore[return-value]
+    filled = [k for k, column in enumerate(table.columns) if any(column)]
+    if len(filled) == _COLUMNS:
+        return filled[0], filled[1]
+    first = [(_WORD.findall(name) or [""])[0].lower() for name in names]
+    x, gap = ([k for k in filled if first[k] in words] for words in (_ALONG, _GAPS))
+    if not (table.head and len(x) == len(gap) == 1):
+        raise InputError(
+            f"profile.file: {file}: {len(names)} columns, {shown}: must have two, x and gap; or name both by "
+            "profile.columns, for example [2, 3]"
+        )
+    return x[0], gap[0]
+
+
+def _units(file: str, lines: list[str], given: float | tuple[float, ...] | None, length: float) -> tuple[float, float]:
+    """Units of x and gap in ``length``: those ``given`` or those in the ``lines`` of a heading."""
     words = next(filter(None, map(_stated, reversed(lines))), [])
-    known = [LENGTHS.get(word.strip().lower()) for word in words]
+    known = [LENGTH_WORDS.get(word.strip().lower()) for word in words]
     shown = " and ".join(f"[{word}]" for word in words)
     stated = None if None in known else [factor / length for factor in known if factor]
     if given is None:
@@ -68,16 +127,6 @@ def column_units(file: str, given: float | tuple[float, ...] | None, length: flo
     return x, gap
 
 
-def _heading(file: str) -> list[str]:
-    """Lines before the first number."""
-    found: list[str] = []
-    for line in read_text(file, _LARGEST).splitlines():
-        if _NUMBER.fullmatch(_words(line)[0]):
-            break
-        found.append(line)
-    return found
-
-
 def _stated(line: str) -> list[str]:
     """Words for the units of both columns in a ``line`` of the heading, or one that stands for both; empty if there are
     none.
@@ -85,14 +134,14 @@ def _stated(line: str) -> list[str]:
     They are in brackets, in round ones only if they are units, or the last words of the columns' names.
     """
     words = ["".join(pair) for pair in _BRACKETS.findall(line)]
-    known = all(word.strip().lower() in LENGTHS for word in words)
+    known = all(word.strip().lower() in LENGTH_WORDS for word in words)
     if len(words) == _COLUMNS and (known or all(square for square, _ in _BRACKETS.findall(line))):
         return words
     cells = _cells(line)
     last = [names[-1] for names in cells]
     if len(cells) == 1:
-        last = [word for word in cells[0] if word.lower() in LENGTHS.keys() - _ENGLISH]
-    if len(last) == _COLUMNS and all(word.lower() in LENGTHS for word in last):
+        last = [word for word in cells[0] if word.lower() in LENGTH_WORDS.keys() - _ENGLISH]
+    if len(last) == _COLUMNS and all(word.lower() in LENGTH_WORDS for word in last):
         return last
     alone = len(words) == 1 and len(cells) == 1 and known and not _unread(line.replace(words[0], "", 1))
     return words if alone else []
@@ -115,36 +164,31 @@ def _unread(line: str) -> str:
     return next((each for each in words if each.lower() in LENGTHS.keys() - _ENGLISH or _IN_FULL.fullmatch(each)), "")
 
 
-def _words(line: str) -> list[str]:
-    return re.split(r"[\s,;]+", line.strip().strip(",;"))
-
-
-def read_points(file: str, unit: tuple[float, float]) -> tuple[Array, Array]:
-    """Read x and gap, (n,) each, times their ``unit``, sorted by x.
-
-    The columns are separated by spaces, tabs, commas or semicolons; lines before the first number, and lines that begin
-    with #, are headings.
+def read_points(
+    file: str, unit: tuple[float, float], columns: tuple[int, int] = (1, 2), centre: float = 0.0
+) -> tuple[Array, Array]:
+    """Read x and gap, (n,) each, times their ``unit``, sorted by x, from ``columns`` (from 1) of a table; x from
+    ``centre`` (m) on. Rows without values are left out.
 
     Raises
     ------
     InputError
-        If the file is no table of two columns with at least ten different x, or a number is neither zero nor of a size
-        that a scene allows.
+        If the file is no table with these columns and at least ten different x, or a number is neither zero nor of a
+        size that a scene allows.
     """
-    rows: list[tuple[float, float]] = []
-    for number, line in enumerate(read_text(file, _LARGEST).splitlines(), start=1):
-        words = _words(line)
-        if line.lstrip().startswith("#") or not line.strip() or (not rows and not _NUMBER.fullmatch(words[0])):
-            continue
-        if len(words) != _COLUMNS or not all(map(_NUMBER.fullmatch, words)):
-            raise InputError(f"profile.file: {file}: line {number}: must have two numbers, x and gap")
-        place, height = (float(re.sub("[dD]", "e", word)) * each for word, each in zip(words, unit, strict=True))
-        for word, value in zip(words, (place, height), strict=True):
-            if value and not SMALLEST <= abs(value) <= LARGEST:
-                sizes = f"zero or of a size from {SMALLEST} to {LARGEST}"
-                raise InputError(f"profile.file: {file}: line {number}: {word}: must be {sizes}")
-        rows.append((place, height))
-    x, gap = np.array(sorted(rows)).reshape(-1, 2).T
+    table = _table(file)
+    if max(columns) > len(table.names):
+        raise InputError(f"profile.file: {file}: {len(table.names)} columns: must have a column {max(columns)}")
+    numbers = [table.numbers(k - 1, f"profile.file: {file}") for k in columns]
+    for k, column, each in zip(columns, numbers, unit, strict=True):
+        size = np.abs(column * each)
+        if (wrong := (size > 0) & ((size < SMALLEST) | (size > LARGEST))).any():
+            row, sizes = int(wrong.argmax()), f"zero or of a size from {SMALLEST} to {LARGEST}"
+            field = table.columns[k - 1][row]
+            raise InputError(f"profile.file: {file}: line {table.lines[row]}: {field}: must be {sizes}")
+    known = np.isfinite(numbers[0]) & np.isfinite(numbers[1])
+    x, gap = (column[known] * each for column, each in zip(numbers, unit, strict=True))
+    order = np.lexsort((gap, x))
     if len(np.unique(x)) < _FEWEST:
         raise InputError(f"profile.file: {file}: must have at least {_FEWEST} different x, not {len(np.unique(x))}")
-    return x, gap
+    return x[order] - centre, gap[order]

@@ -22,7 +22,9 @@ _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?|[+-]?inf(?:in
 _COMMA = re.compile(r"[+-]?\d*,\d+(?:[eEdD][+-]?\d+)?|[+-]?\d+(?:[eEdD][+-]?\d+)?")  # with a decimal comma
 _NO_VALUE = {"", "-", "--", "novalue", "no value", "n/a", "na", "nan", "null", "none", "bad"}
 _RULE = re.compile(r"[\s\-=_*+|]*")
-_SUMMARY = re.compile(r"(?:minimum|maximum|total|sum|mean|at\s+(?:node|element))\b.*", re.IGNORECASE)
+_SUMMARY = re.compile(
+    r"(?:minimum|maximum|total|sum|mean|at\s+(?:node|element))\b.*|(?:node|element|value)s?\s+[-+.\d].*", re.IGNORECASE
+)
 _COMMENTS = ("#", "%", "!", "//")
 #: Lines between the blocks of a report that tell what a block is of.
 _LABELS = {
@@ -130,8 +132,9 @@ def decoded(data: bytes, origin: str) -> tuple[str, str]:
     return text.replace("\r\n", "\n").replace("\r", "\n"), note
 
 
-def read_table(text: str, origin: str) -> TextTable:
-    """Read the table in ``text``; ``origin`` is the file's name for messages.
+def read_table(text: str, origin: str, loose: bool = False) -> TextTable:
+    """Read the table in ``text``; ``origin`` is the file's name for messages. With ``loose``, words above the rows that
+    are no heading, as they are no names of all columns, are read by who asks.
 
     Separators are commas, semicolons, tabs or blanks; commas that do not separate are decimal commas. ``#`` begins a
     comment; a heading may be one. A line of units under the heading joins it. Blocks of a report, each with its heading
@@ -145,7 +148,13 @@ def read_table(text: str, origin: str) -> TextTable:
     lines = text.split("\n")
     bare = [_without_comment(line) for line in lines] if any(mark in text for mark in _COMMENTS) else lines
     form, first = _form(bare, origin)
-    names, head, ruled = _heading(lines, bare, form, first, origin)
+    try:
+        names, head, ruled = _heading(lines, bare, form, first, origin)
+    except InputError:
+        last = next((line for line in reversed(bare[:first]) if line.strip()), "")
+        if not loose or is_value(re.split(r"[\s,;]", last.strip().replace(",", " "))[0]):
+            raise
+        names, head, ruled = _numbered(form)
     rows, numbers, blocks, left = _rows(bare, form, first, (head, ruled), origin)
     if len(rows) > MOST_ROWS:
         raise InputError(f"{origin}: {len(rows)} rows: must be at most {MOST_ROWS}")

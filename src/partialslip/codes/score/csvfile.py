@@ -1,16 +1,17 @@
 """Columns of x, pressure and shear of a table, and a table to fill in."""
 
+import itertools
 import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.codes.score.headers import COLUMN_DIMENSIONS, NODES, Asked, known, numbered, place_of, selected, shown
+from partialslip.codes.score.headers import COLUMN_DIMENSIONS, NODES, Asked, known, numbered, selected, shown
 from partialslip.codes.score.rows import Label, check_equal_x
 from partialslip.codes.score.samples import PLAUSIBLE, unusable
 from partialslip.scene import Scene
-from partialslip.scene.columns import split_unit
+from partialslip.scene.columns import place_of, split_unit
 from partialslip.scene.texttable import TextTable
 from partialslip.scene.units import SI, Units
 from partialslip.tools.arrays import Array, Mask
@@ -18,7 +19,7 @@ from partialslip.tools.errors import InputError
 
 #: Columns by which rows of several states and surfaces are told apart.
 _TELLS = re.compile(
-    r"(?:part|surf(?:ace)?|side|body|instance|region|pair|set|load.?case|case|load.?point|step|frame|inc(?:rement)?|time|"
+    r"(?:part|surf(?:ace)?|side|body|instance|region|pair|set|load.?case|case|load.?point|step|frame|inc(?:rement)?|time|inst|nume_ordre|"
     r"block|source|file|method)(?:[ _.-]?(?:id|no|name|number))?",
     re.IGNORECASE,
 )
@@ -185,8 +186,8 @@ def _listed(kinds: list[str]) -> str:
 def _of_one(
     table: TextTable, used: list[int], values: Mapping[str, Array], unit: float, origin: str
 ) -> tuple[Mask, list[str]]:
-    """The rows of one surface, state and method, (n,), and notes; ``used`` columns do not tell rows apart. The unit of x
-    is ``unit``, m.
+    """The rows of one surface, state and method, (n,), and notes; ``used`` columns do not tell rows apart. x is in
+    ``unit``, m.
 
     Raises InputError with what to type to keep some of them.
     """
@@ -207,9 +208,7 @@ def _of_one(
                 notes.append(f"left out: rows with {name} {others}, where tractions are zero")
             continue
         spans = sorted((x[own == at].min(), x[own == at].max()) for at in told)
-        if name.lower() == "method" or any(
-            after[0] < before[1] for before, after in zip(spans, spans[1:], strict=False)
-        ):
+        if name.lower() == "method" or any(after[0] < before[1] for before, after in itertools.pairwise(spans)):
             raise InputError(
                 f"{origin}: {name} is {_listed(kinds)}: must be one: keep one, as by {_type(name, kinds[-1])}"
             )

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from partialslip.scene.columns import split_unit
+from partialslip.scene.columns import place_of, split_unit
 from partialslip.scene.units import Dimension
 from partialslip.tools.errors import InputError
 
@@ -165,16 +165,6 @@ def selected(names: list[str], chosen: Mapping[str, str], asked: Asked) -> dict[
     return _complete(wanted, names, asked)
 
 
-def place_of(name: str, names: list[str]) -> int | None:
-    """Index of the column ``name``, with or without unit, or number from 1, among ``names``; None if there is none, or
-    more than one."""
-    places = [k for k, each in enumerate(names) if name in (each, split_unit(each)[0])]
-    places = places or [k for k, each in enumerate(names) if name.lower() == each.lower()]
-    if not places and name.isdigit() and 1 <= int(name) <= len(names):
-        places = [int(name) - 1]
-    return places[0] if len(places) == 1 else None
-
-
 def shown(names: list[str]) -> str:
     """``names`` of columns for a message."""
     return ", ".join(repr(name) for name in names)[:100]
@@ -189,7 +179,7 @@ def _complete(wanted: dict[str, Wanted], names: list[str], asked: Asked) -> dict
     if not shears and (alone := next((name for name in _ALONE if name in wanted), None)):
         shears, wanted = [(_ALONE[alone],)], wanted | {_ALONE[alone]: wanted[alone]._replace(moment=True)}
     if asked.part:
-        if len(normal) < 2 and len(shears) < 2 and (normal or shears):
+        if len(normal) < 2 and len(shears) < 2 and (normal or shears or "x" in wanted):
             return {name: wanted[name] for name in ("x", *normal, *(shears[0] if shears else ())) if name in wanted}
     elif "x" in wanted and len(normal) == 1 and not shears and not asked.shear:
         shears = [()]  # type: ignore[list-item]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from partialslip.codes.score.calculix import LoadPoints, read_dat, read_frd, stated_units
-from partialslip.codes.score.csvfile import Columns, columns_of, where
+from partialslip.codes.score.csvfile import columns_of, where
 from partialslip.codes.score.headers import FIRST, NORMAL, Asked
 from partialslip.codes.score.kinds import Kind, cells_around, note
 from partialslip.codes.score.samples import Samples, samples
@@ -45,7 +45,7 @@ def read_tractions(
     kept: Mapping[str, str] | None = None,
     centred: bool = False,
 ) -> Samples:
-    """Read tractions from ``files``: one, or one for each load point, each of which may have a file for p and one for q.
+    """Read tractions from ``files``: one, or one for each load point, each of which may be two, for p and for q.
 
     Formats: tables of text; .frd and .dat of CalculiX; formats of meshio with point data. The pressure at load point 1,
     p1, must be there where the scene's pressure varies, and may be where shear changes it. Parameters as for

@@ -117,9 +117,8 @@ def _averaged(state: _State) -> _State:
 
 
 def _beside(one: _State, other: _State) -> _State:
-    """Both in one: the pressure of one and the shear of the other."""
-    has, other_has = set(one.values) - {"x"}, set(other.values) - {"x"}
-    if has & other_has or not (has and other_has):
+    """Both in one: what one has, and what the other has."""
+    if (set(one.values) - {"x"}) & set(other.values) or set(one.values) == set(other.values):
         raise InputError(
             f"{one.name} and {other.name}: must be a file of p and one of q, or both in each; or give --columns"
         )
