@@ -14,8 +14,8 @@ WRITTEN_FORMATS = {".vtu", ".vtk", ".xdmf", ".xmf", ".msh", ".med", ".e", ".exo"
 
 
 def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
-    """Points (n, 3), and values (n,) by name, of the file ``path``, whose suffix tells the format; of vectors by name and
-    number, as in ``name:0``.
+    """Points (n, 3), and values (n,) by name, of the file ``path``, whose suffix tells the format; of vectors by name
+    and number, as in ``name:0``.
 
     If the mesh has line cells, only their points are returned.
 

@@ -192,7 +192,7 @@ def _of_one(
     Raises InputError with what to type to keep some of them.
     """
     every, notes = np.ones(len(table.lines), bool), list[str]()
-    if "x" not in values:
+    if not {"x"} < set(values):
         return every, notes
     x, pressed = values["x"], np.any([column != 0 for name, column in values.items() if name != "x"], axis=0)
     for k, name in enumerate(table.names):

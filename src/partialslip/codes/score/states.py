@@ -122,7 +122,7 @@ def _beside(one: _State, other: _State) -> _State:
         raise InputError(
             f"{one.name} and {other.name}: must be a file of p and one of q, or both in each; or give --columns"
         )
-    if "x" not in one.values:
+    if "x" not in one.values or set(one.values) == {"x"}:
         one, other = other, one
     other = _at_points_of(one, other)
     made = ", ".join(dict.fromkeys(part for text in (one.made_of, other.made_of) for part in text.split(", ") if part))
@@ -136,8 +136,10 @@ def _at_points_of(one: _State, other: _State) -> _State:
     x, at = one.values.get("x"), other.values.get("x")
     if x is not None and at is not None and len(x) == len(at) and np.abs(x - at).max() <= _APART * np.ptp(x):
         return other
-    if one.nodes and other.nodes and len(set(one.nodes)) == len(one.nodes) and set(one.nodes) == set(other.nodes):
-        rows = {node: row for row, node in enumerate(other.nodes)}
+    alone = set(other.values) == {"x"}  # a list of nodes, which may have others, too
+    has, other_has = set(one.nodes or ()), set(other.nodes or ())
+    if one.nodes and len(has) == len(one.nodes) and (has == other_has or (alone and has < other_has)):
+        rows = {node: row for row, node in enumerate(other.nodes or ())}
         order = np.array([rows[node] for node in one.nodes])
         return other._replace(values={name: column[order] for name, column in other.values.items()}, nodes=one.nodes)
     counts = [len(next(iter(state.values.values()))) for state in (one, other)]
