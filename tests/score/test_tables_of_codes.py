@@ -68,7 +68,7 @@ def test_pressure_and_shear_in_two_files(tmp_path):
                text(np.column_stack([NODES, ROWS[:, 2]])[::-1], "Node,CSHEAR1")]  # fmt: skip
     check(files(tmp_path, p__csv=by_node[0], q__csv=by_node[1]))
     apart = [
-        text(np.column_stack([NODES, ROWS[:, 0]])[::-1], "NODE X", " "),
+        text(np.column_stack([NODES, ROWS[:, 0]])[::-1], "NODE X", " ") + "500 7.0\n",
         text(np.column_stack([NODES, ROWS[:, 1:]]), "NODE PRES TAUR", " ") + "MINIMUM VALUES\nNODE 1 2\nVALUE 0. 1.\n",
     ]
     check(files(tmp_path, x__lis=apart[0], pq__lis=apart[1]), "left out: 3 lines of sums or extremes")

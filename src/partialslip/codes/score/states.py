@@ -138,7 +138,8 @@ def _at_points_of(one: _State, other: _State) -> _State:
         return other
     alone = set(other.values) == {"x"}  # a list of nodes, which may have others, too
     has, other_has = set(one.nodes or ()), set(other.nodes or ())
-    if one.nodes and len(has) == len(one.nodes) and (has == other_has or (alone and has < other_has)):
+    once = len(has) == len(one.nodes or ()) and len(other_has) == len(other.nodes or ())
+    if has and once and (has == other_has or (alone and has < other_has)):
         rows = {node: row for row, node in enumerate(other.nodes or ())}
         order = np.array([rows[node] for node in one.nodes])
         return other._replace(values={name: column[order] for name, column in other.values.items()}, nodes=one.nodes)
