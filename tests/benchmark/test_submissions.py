@@ -29,7 +29,7 @@ from partialslip.verify.benchmark.book import book_page
 from partialslip.verify.benchmark.codes import CODES, code_answers
 from partialslip.verify.benchmark.codes.own import Own
 from partialslip.verify.benchmark.problem import read_frozen
-from partialslip.verify.benchmark.tables import answer_from
+from partialslip.verify.benchmark.tables import read_table
 
 SOME = {"PS-02": read_problems()["PS-02"]}
 
@@ -159,8 +159,8 @@ def test_tractions_of_any_code_make_an_answer(tmp_path):
     table = np.column_stack([x, *exact.traction.at(x)[:2]])
     np.savetxt(tmp_path / "mine.csv", table, delimiter=",", header="x,p,dq", comments="")
     np.savetxt(tmp_path / "named.csv", table, delimiter=",", header="where,CPRESS,change", comments="")
-    found = answer_from(problem, tmp_path / "mine.csv")
-    named = answer_from(problem, tmp_path / "named.csv", {"x": "where", "p": "CPRESS", "dq": "change"})
+    found = read_table(problem, tmp_path / "mine.csv")
+    named = read_table(problem, tmp_path / "named.csv", {"x": "where", "p": "CPRESS", "dq": "change"})
     assert named.values == found.values
     for key in ("a", "m", "n"):
         assert found.values[key] == pytest.approx(problem.targets[key].value, abs=2e-3 * exact.a)

@@ -60,10 +60,13 @@ def add_method(parser: argparse.ArgumentParser, text: str, **more: Any) -> None:
 
 
 def add_columns(parser: argparse.ArgumentParser) -> None:
-    """Add ``--columns``, which :func:`columns_of` parses."""
+    """Add ``--columns`` and ``--where``, which :func:`columns_of` and :func:`where_of` parse."""
     parser.add_argument("--columns", metavar="NAMES",
                         help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1, "
                         "or q2=CSHEAR1 for the shear at load point 2")  # fmt: skip
+    parser.add_argument("--where", metavar="COLUMN=VALUE", action="append",
+                        help="keep the rows in which a column has this value: surface=FLAT; step=A,B are those of load "
+                        "points 1 and 2")  # fmt: skip
 
 
 def columns_of(text: str | None) -> dict[str, str] | None:
@@ -74,6 +77,15 @@ def columns_of(text: str | None) -> dict[str, str] | None:
     if not all(name.strip() and made.strip() for name, _, made in pairs):
         raise InputError(f"--columns {text}: must be pairs NAME=COLUMN, for example x=X,p=CPRESS,dq=S2-S1")
     return {name.strip(): made.strip() for name, _, made in pairs}
+
+
+def where_of(options: list[str] | None) -> dict[str, str]:
+    """Parse the values of ``--where``."""
+    pairs = [option.partition("=") for option in options or ()]
+    for option, (name, _, value) in zip(options or (), pairs, strict=True):
+        if not name.strip() or not value.strip():
+            raise InputError(f"--where {option}: must be COLUMN=VALUE, for example surface=FLAT")
+    return {name.strip(): value.strip() for name, _, value in pairs}
 
 
 def add_pdf(parser: argparse.ArgumentParser, told: str = "also write the report as report.pdf, A4") -> None:

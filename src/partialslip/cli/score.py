@@ -19,6 +19,7 @@ from partialslip.cli.common import (
     folder_if_wanted,
     origin,
     print_outcome,
+    where_of,
 )
 from partialslip.tools.bars import LARGEST, Asked, asked
 from partialslip.tools.errors import InputError
@@ -53,9 +54,6 @@ def add(commands: Commands) -> None:
                         help="multiply x, p and q by these factors, after the units of the scene or of the columns: "
                         "1e-3,1e6,1e6 for mm and MPa in an SI scene; -1 changes the sign")  # fmt: skip
     add_columns(scores)
-    scores.add_argument("--where", metavar="COLUMN=VALUE", action="append",
-                        help="keep the rows in which a column has this value: surface=FLAT; step=A,B are those of load "
-                        "points 1 and 2")  # fmt: skip
     scores.add_argument("--centre", choices=("given", "auto"), default="given",
                         help="auto puts x = 0 in the middle of the contact (default: given)")  # fmt: skip
     scores.add_argument("--order", metavar="1|2", default="1",
@@ -135,22 +133,13 @@ def _score(options: argparse.Namespace) -> int:
             order=int(options.order),
             at=(at[0], at[1]) if at else None,
             columns=columns_of(options.columns),
-            where=_where(options.where),
+            where=where_of(options.where),
             centre=options.centre,
             kind=options.kind,
             progress=tell,
         )
         written = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
     return print_outcome(outcome, options, written, elsewhere=elsewhere)
-
-
-def _where(options: list[str] | None) -> dict[str, str]:
-    """Parse the values of ``--where``."""
-    pairs = [option.partition("=") for option in options or ()]
-    for option, (name, _, value) in zip(options or (), pairs, strict=True):
-        if not name.strip() or not value.strip():
-            raise InputError(f"--where {option}: must be COLUMN=VALUE, for example surface=FLAT")
-    return {name.strip(): value.strip() for name, _, value in pairs}
 
 
 def _bar(text: str) -> Asked:

@@ -141,7 +141,7 @@ def _at_points_of(one: _State, other: _State) -> _State:
     once = len(has) == len(one.nodes or ()) and len(other_has) == len(other.nodes or ())
     if has and once and (has == other_has or (alone and has < other_has)):
         rows = {node: row for row, node in enumerate(other.nodes or ())}
-        order = np.array([rows[node] for node in one.nodes])
+        order = np.array([rows[node] for node in one.nodes or ()])
         return other._replace(values={name: column[order] for name, column in other.values.items()}, nodes=one.nodes)
     counts = [len(next(iter(state.values.values()))) for state in (one, other)]
     raise InputError(
