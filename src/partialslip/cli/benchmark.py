@@ -11,6 +11,7 @@ from partialslip.cli.common import (
     add_pdf,
     check_output,
     columns_of,
+    factors_of,
     print_written,
     results_folder,
     where_of,
@@ -145,7 +146,9 @@ def _read(options: argparse.Namespace) -> int:
 
     problem, named = numbered(options.problem), options.code is not None
     code = options.code if named else Path(options.files[0]).stem
-    table = read_table(problem, options.files, columns_of(options.columns), where_of(options.where))
+    table = read_table(
+        problem, options.files, columns_of(options.columns), where_of(options.where), factors_of(options.factors)
+    )
     for note in table.notes:
         output().print(note, soft_wrap=True, markup=False)
     print_written(

@@ -2,9 +2,7 @@
 
 import argparse
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
 
 import partialslip
 from partialslip.cli.common import (
@@ -16,7 +14,9 @@ from partialslip.cli.common import (
     add_verbose,
     check_output,
     columns_of,
+    factors_of,
     folder_if_wanted,
+    numbers_of,
     origin,
     print_outcome,
     where_of,
@@ -24,8 +24,6 @@ from partialslip.cli.common import (
 from partialslip.tools.bars import LARGEST, Asked, asked
 from partialslip.tools.errors import InputError
 from partialslip.tools.methods import REFERENCES
-
-_T = TypeVar("_T")
 
 
 def add(commands: Commands) -> None:
@@ -50,9 +48,6 @@ def add(commands: Commands) -> None:
                         help="tractions: a table (.csv, .txt, .tsv, .rpt), .frd or .dat, or .vtu, .vtk, .xdmf, .xmf, "
                         ".msh, .med, .e, .exo or .ex2; or one file for each load point")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
-    scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
-                        help="multiply x, p and q by these factors, after the units of the scene or of the columns: "
-                        "1e-3,1e6,1e6 for mm and MPa in an SI scene; -1 changes the sign")  # fmt: skip
     add_columns(scores)
     scores.add_argument("--centre", choices=("given", "auto"), default="given",
                         help="auto puts x = 0 in the middle of the contact (default: given)")  # fmt: skip
@@ -79,11 +74,9 @@ def add(commands: Commands) -> None:
 
 def _score(options: argparse.Namespace) -> int:
     check_output(options)
-    factors = _numbers(options.factors, float, "--factors", "three numbers, for example 1e-3,1e6,1e6", 3)
-    at = () if options.at is None else _numbers(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
+    factors = factors_of(options.factors)
+    at = () if options.at is None else numbers_of(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
     bar = None if options.bar is None else _bar(options.bar)
-    if not all(0 < abs(factor) < float("inf") for factor in factors):
-        raise InputError(f"--factors {options.factors}: must be finite and not zero")
     if options.order not in ("1", "2"):
         raise InputError(f"--order {options.order}: must be 1 or 2")
     scene = partialslip.load_scene(options.scene, options.overrides)
@@ -129,7 +122,7 @@ def _score(options: argparse.Namespace) -> int:
             files,
             bar=bar,
             reference=options.reference,
-            factors=(factors[0], factors[1], factors[2]),
+            factors=factors,
             order=int(options.order),
             at=(at[0], at[1]) if at else None,
             columns=columns_of(options.columns),
@@ -145,20 +138,10 @@ def _score(options: argparse.Namespace) -> int:
 def _bar(text: str) -> Asked:
     """Parse the value of ``--bar``."""
     wanted = f"one number, or three for contact, stick zone and tractions, > 0 and <= {LARGEST:g}"
-    numbers = _numbers(text, float, "--bar", wanted, 1, 3)
+    numbers = numbers_of(text, float, "--bar", wanted, 1, 3)
     try:
         found = asked(numbers)
     except InputError:
         raise InputError(f"--bar {text}: must be {wanted}") from None
     assert found
     return found
-
-
-def _numbers(text: str, kind: Callable[[str], _T], option: str, wanted: str, *counts: int) -> tuple[_T, ...]:
-    try:
-        numbers = tuple(kind(word) for word in text.split(","))
-    except ValueError:
-        numbers = ()
-    if len(numbers) not in counts:
-        raise InputError(f"{option} {text}: must be {wanted}")
-    return numbers

@@ -49,11 +49,13 @@ def read_table(
     files: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     columns: Mapping[str, str] | None = None,
     where: Mapping[str, str] | None = None,
+    factors: tuple[float, float, float] = (1.0, 1.0, 1.0),
 ) -> TableValues:
     """Read what the tractions in ``files``, one or one for each load point, give of the targets of ``problem``.
 
     a, m and n are found as :func:`partialslip.score` finds them; p, dq, q1 and q2 are linear between the rows, and the
-    places are those of the target's a. ``columns`` and ``where`` as there.
+    places are those of the target's a. ``columns``, ``where`` and
+    ``factors`` as there.
 
     Raises
     ------
@@ -62,7 +64,7 @@ def read_table(
     """
     paths = [Path(each) for each in ([files] if isinstance(files, (str, os.PathLike)) else files)]
     origin, scene = " and ".join(map(str, paths)), problem.scene
-    samples = read_tractions(paths, scene, chosen=columns, kept=where)
+    samples = read_tractions(paths, scene, factors, chosen=columns, kept=where)
     result = _result(problem, samples, origin)
     found = targeted(problem, result)
     halves = [_half(problem, samples.coarser(first), origin) for first in (0, 1)]
