@@ -202,6 +202,21 @@ def test_normalised_tables(tmp_path):
         check(path, "normalised columns: times the scene's ", "a = 0.2066977 mm, ")
 
 
+HEADS = ("x/mm,p/MPa,q/MPa", "x_mm,p_MPa,q_MPa", "x in mm,p in MPa,q in MPa", "x mm,p MPa,q MPa",
+         "x,p,q\nmm,MPa,MPa", "x (mm),p (N/mm²),q [n/mm^2]")  # fmt: skip
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_units_of_a_heading(tmp_path, head):
+    scene = load_scene("fretting-aluminium", ["load.Q=[-30e3, 30e3]", "load.sigma=[0, 0]"])  # SI
+    check(files(tmp_path, t__csv=text(ROWS, head)), scene=scene)
+
+
+def test_the_way_along_a_path_is_x_where_there_is_no_other(tmp_path):
+    rows = text(ROWS + np.array([1, 0, 0]), "True distance along path,CPRESS,CSHEAR1")
+    check(files(tmp_path, t__csv=rows), "x = 0 was put in the middle", centre="auto")
+
+
 def test_names_behind_others_and_points_of_paraview(tmp_path):
     (path,) = files(tmp_path, t__csv=text(np.column_stack([ROWS, 0 * X]), "x,pad_normal_lm,pad_frictional_lm,disp_x"))
     check(path)

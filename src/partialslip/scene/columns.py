@@ -18,6 +18,10 @@ SI_FACTORS = {
     "n/mm\N{SUPERSCRIPT TWO}": 1e6, "n/m\N{SUPERSCRIPT TWO}": 1.0,
 }  # fmt: skip
 _BRACKETS = re.compile(r"^(?P<name>.*?[^\s_])[\s_]*[\[({](?P<unit>[^\[\]()]*)[\])}]$")
+# a unit of one letter, or one that is a word, stands behind a slash only
+_BEHIND = re.compile(
+    r"^(?P<name>[^/]*?[^\s/_])(?:\s*/\s*(?P<unit>\S+)|(?:\s+in\s+|[\s_])(?P<other>(?!in$)[^\s_]{2,}))$", re.I
+)
 
 
 def is_unit(text: str) -> bool:
@@ -26,9 +30,10 @@ def is_unit(text: str) -> bool:
 
 
 def split_unit(name: str) -> tuple[str, float | None]:
-    """Split a column's name into the name and the unit, as a factor to SI units; None if there is no unit."""
-    parts = _BRACKETS.match(name)
-    unit = parts["unit"].strip().lower() if parts else ""
+    """Split a column's name into the name and the unit, as a factor to SI units; None if there is no unit. The unit is
+    in brackets, or behind a slash, an underscore or a blank."""
+    parts = _BRACKETS.match(name) or _BEHIND.match(name)
+    unit = (parts["unit"] or parts.groupdict().get("other") or "").strip().lower() if parts else ""
     return (parts["name"], SI_FACTORS[unit]) if parts and unit in SI_FACTORS else (name, None)
 
 

@@ -40,6 +40,8 @@ NAMES = {
         "frictional_lm": 1, "lambda_t": 1, "shear": 1, "shear stress": 1, "shear_stress": 1, "shear traction": 1,
     },
 }  # fmt: skip
+#: Names of the way along a path, in lower case: x of a table that has no other.
+PATHS = ("true distance along path", "distance along path", "path distance", "distance", "arc_length")
 #: Names of numbers of nodes, in lower case.
 NODES = ("node", "node label", "node number", "node_number", "node id", "node_id", "nodeid", "nodal number", "id")
 
@@ -110,6 +112,8 @@ def known(names: list[str], asked: Asked) -> dict[str, Wanted]:
             signs = NAMES[name]
             others = [(k, _listed(own.lower(), signs), unit) for k, (own, unit) in enumerate(plain)]
             found[name] = [Wanted({k: signs[own]}, unit, names[k], name == "q") for k, own, unit in others if own]
+    if not found["x"]:
+        found["x"] = [Wanted({k: 1.0}, unit, names[k]) for k, (own, unit) in enumerate(plain) if own.lower() in PATHS]
     for name, places in found.items():
         if len(places) > 1:
             told = " and ".join(repr(place.text) for place in places)
