@@ -26,7 +26,7 @@ from partialslip.halfplane import contact
 from partialslip.halfplane.steady import transition
 from partialslip.halfplane.turning import half_cycle
 from partialslip.run.judge import compare
-from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import norm_errors
 from partialslip.scene.reading import parse_scene
 from partialslip.tools.errors import InputError
 from partialslip.tools.threads import one_thread

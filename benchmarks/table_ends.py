@@ -26,7 +26,7 @@ from partialslip.codes.score.samples import samples
 from partialslip.halfplane import contact
 from partialslip.halfplane.steady import steady_stick_zone, transition
 from partialslip.march.cells import compliance, forces, graded_cells
-from partialslip.run.judge.means import cell_means, means
+from partialslip.run.judge.measures import cell_means, means
 from partialslip.scene.gradual import turns_round
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError

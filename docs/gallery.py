@@ -11,6 +11,7 @@ from partialslip.result import Result
 from partialslip.run import Run
 
 DOCS = Path(__file__).parent
+_ANSWERS = ("stick zone", "a", "p0", "p_max")  # others are in the tables below
 OWN = ("mean-loads", "out-of-phase", "dovetail", "finite-pad")  # in docs/scenes
 
 _HEAD = """\
@@ -61,10 +62,16 @@ def scenes() -> dict[str, str]:
 def entry(name: str, scene: str, run: Run) -> str:
     """Section of a run: command, answer, errors, limits, slip and figure, in Markdown."""
     title = run.scene.title.rstrip(".")
-    found = [answer.answer_heading(run), "\n".join(f"- {quantity}: {value}" for quantity, value in answer.answers(run))]
-    lines = [*found, rows.units(run), *(table(run, each) for each in run.comparisons)]
+    lines = [heading(run), rows.units(run), *(table(run, each) for each in run.comparisons)]
     facts = fact(run.results[run.reference or "fem"])
     return _ENTRY.format(name=name, title=title, scene=scene, table="\n\n".join(lines), facts=facts)
+
+
+def heading(run: Run) -> str:
+    """Method, regime and main answers in one paragraph."""
+    own = ", ".join(f"{quantity} {value}" for quantity, value in answer.answers(run) if quantity in _ANSWERS)
+    text = f"{answer.answer_heading(run)}: {own}"
+    return textwrap.fill(text, 120, break_long_words=False, break_on_hyphens=False)
 
 
 def table(run: Run, method: str) -> str:

@@ -76,11 +76,10 @@ in `benchmarks/submissions`). *At best*: the highest grade that the uncertainty 
 all codes with adapters of its own; their authors did not tune them.
 
 **Seconds.** Two cores ({machine}). partialslip ran alone, in one thread, the others up to two at a time and beside
-tests, which costs 5 to 10 % ([measured](cost.md) with GetFEM); repeated runs differ by a tenth and more. Seconds of
-other codes are of the whole process without meshing; `getfem-graded` includes the run that finds the ends. For
-partialslip the first number is the solution with meshing (P1 and P2: the finest mesh); the second adds the start of
-Python ({starts} CPU s): compare only the second with other codes. CalculiX solves slices with two layers of nodes,
-twice the unknowns of a plane mesh.
+tests, which costs 5 to 10 % ([measured](cost.md) with GetFEM); repeated runs differ by a tenth and more. All seconds
+are those of the whole process: of partialslip with meshing (P1 and P2: the finest mesh) and with the start of Python
+({starts}), of other codes without meshing; `getfem-graded` includes the run that finds the ends. CalculiX solves slices
+with two layers of nodes, twice the unknowns of a plane mesh.
 
 The table of groups has the number of problems with a value for every target of contact, stick and tractions, and the
 worst grade of each group. "1 not offered": one problem with other values lacks values of the group.
@@ -133,8 +132,8 @@ _EQUAL = """
 ## At equal resolution
 
 Codes with elements of one size along the contact: partialslip's linear ones beside Kratos, CalculiX and OpenSees,
-quadratic ones beside GetFEM. A cell has the largest error among the targets of contact, stick and tractions, its
-target, and CPU seconds of the whole process. Rows that no other code answers are left out. At the corners of the flat
+quadratic ones beside GetFEM. A cell has the largest error among the targets of contact, stick and tractions, and its
+target. Rows that no other code answers are left out. At the corners of the flat
 (PS-10, PS-11) only the meshes of the other codes are finer.
 
 {tables}
@@ -193,7 +192,7 @@ def page() -> str:
 def _head(found: Sequence[Submission]) -> str:
     """Head of the page."""
     told = _start()
-    starts = ", ".join(f"{seconds:.2g} ({method})" for method, seconds in told["start"].items())
+    starts = ", ".join(f"{method} {seconds:.2g}" for method, seconds in told["start"].items())
     machines = {told["machine"], *(each.meta.machine for each in found)}
     assert len(machines) == 1, f"one machine is told, not {machines}"
     text = _HEAD.format(edition=EDITION, starts=starts, machine=told["machine"])
@@ -281,13 +280,13 @@ def _mark(submission: Submission, problem: Problem, number: str) -> Mark | None:
 
 
 def _error(submission: Submission, mark: Mark | None, number: str) -> str:
-    """Error that the ``mark`` of an answer is of, and seconds of a whole process."""
+    """Error that the ``mark`` of an answer is of."""
     answer = submission.answers.get(number)
     if answer and not answer.values:
         return "*none*"
     if mark is None:
         return "–"
-    return f"{mark.error:.1e} ({mark.worst}; {_seconds(submission, number).removesuffix(' s')})"
+    return f"{mark.error:.1e} ({mark.worst})"
 
 
 def _standings(found: Sequence[Submission]) -> str:
@@ -333,17 +332,12 @@ def _table(problems: Mapping[str, Problem], found: Sequence[Submission], first: 
 
 
 def _whole(submission: Submission, number: str, cell: str) -> str:
-    """``cell`` of the table; for a method of partialslip with the seconds of a whole process beside the solution's."""
-    if not (_own(submission) and cell.endswith(" s)")):
-        return cell
-    return f"{cell.removesuffix(' s)')}; {_seconds(submission, number)})"
-
-
-def _seconds(submission: Submission, number: str) -> str:
-    """CPU seconds of a whole process: an answer of a method of partialslip has those of the solution."""
+    """``cell`` of the table with CPU seconds of the whole process: the answers of partialslip have the solution's."""
     own = _own(submission)
-    whole = submission.answers[number].cpu_s + (_start()["start"][own.method] if own else 0.0)
-    return f"{float(f'{whole:.2g}'):g} s"
+    if not own or not cell.endswith(" s)"):
+        return cell
+    whole = submission.answers[number].cpu_s + _start()["start"][own.method]
+    return f"{cell.split('(')[0]}({float(f'{whole:.2g}'):g} s)"
 
 
 def _own(submission: Submission) -> Own | None:

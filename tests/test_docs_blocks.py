@@ -29,11 +29,7 @@ from partialslip.scene.reading import load_scene, parse_scene
 
 DOCS = Path(__file__).parents[1] / "docs"
 SHIPPED = "src/partialslip/scene/shipped/fretting-aluminium.toml"
-# Pages that run with the slow tests
-HEAVY = {
-    "howto/rig.md", "howto/equivalent.md", "howto/fatigue.md", "howto/benchmark.md", "howto/python.md", "howto/size.md",
-    "sizes/half-plane.md", "symptoms.md", "howto/accuracy.md",
-}  # fmt: skip
+SMOKE = "howto/csv.md"  # runs always, the others with the slow tests
 BLOCK = re.compile(r"^(?:<!-- (not run: [^\n]+|slow) -->\n)?```(\w+)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 NUMBER = r"-?\d+(?:\.\d+)?e[-+]\d+|-?\d+\.\d+"
 PARTS = re.compile(rf"(\.\.\.|(?<![\w.])(?:{NUMBER})(?![\w.]))")
@@ -176,30 +172,14 @@ def run_page(name, folder, slow):
     return count
 
 
-WHOLE = [name for name, found in PAGES.items() if any(block.mark == "slow" for block in found)]  # by the slow tests
-
-
 @pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.slow) if name in HEAVY else name
-        for name in PAGES
-        if not (name in HEAVY and name in WHOLE)
-    ],
+    "name", [name if name == SMOKE else pytest.param(name, marks=pytest.mark.slow) for name in PAGES]
 )
 def test_page_runs(name, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    run_page(name, tmp_path, slow=False)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", WHOLE)
-def test_whole_page_runs(name, tmp_path, monkeypatch):
+    """With its slow blocks where the codes are installed that they call."""
     codes = {line.split()[0] for block in PAGES[name] if block.mark == "slow" for line in block.code.splitlines()}
-    if missing := [code for code in codes & set(ALONE) if not shutil.which(code)]:
-        pytest.skip(f"{', '.join(missing)}: not installed")
     monkeypatch.chdir(tmp_path)
-    run_page(name, tmp_path, slow=True)
+    run_page(name, tmp_path, slow=all(shutil.which(code) for code in codes & set(ALONE)))
 
 
 def test_what_differs_is_noticed():
@@ -216,8 +196,3 @@ def test_what_differs_is_noticed():
 def test_most_blocks_are_run():
     found = [block for page in PAGES.values() for block in page]
     assert sum(block.mark != "" for block in found) < len(found) / 5
-
-
-if __name__ == "__main__":  # how many blocks there are
-    counted = [block for page in PAGES.values() for block in page]
-    print(len(counted), "of which", sum(block.mark != "" for block in counted), "are not run or slow")

@@ -11,6 +11,7 @@ from typing import get_args
 
 import msgspec
 import pytest
+from tests.cli.test_command_line import COMMANDS
 
 from partialslip import scene
 from partialslip.cli import main
@@ -77,18 +78,8 @@ def test_formulas_are_markup(built):
 def test_every_command_is_in_the_reference(built, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
     text = page(built, "reference/commands")
-    for command in (
-        "run",
-        "map",
-        "page",
-        "fatigue",
-        "verify",
-        "study cost",
-        "study size",
-        "score",
-        "export",
-        "completion",
-    ):
+    for words in filter(None, COMMANDS):
+        command = " ".join(words)
         assert main([*command.split(), "--help"]) == 0
         assert f'id="partialslip-{command.replace(" ", "-")}"' in text
         options = re.findall(r"--[a-z][\w-]+", capsys.readouterr().out)

@@ -1,6 +1,5 @@
 """Runs in several threads of one process: the same results as one after the other, and the caller's settings left."""
 
-import asyncio
 import io
 import os
 import subprocess
@@ -101,18 +100,6 @@ def test_a_library_that_is_loaded_within_a_limit_is_limited_too():
     done = subprocess.run([sys.executable, "-c", LATE], capture_output=True, text=True, check=True, env=TWO)
     assert done.stdout.split()[0] == "{1}"
     assert done.stdout.split()[-1] == "{2}"
-
-
-def test_in_a_notebook(alone):
-    async def cells():
-        return await asyncio.gather(*(asyncio.to_thread(solved, settings) for settings in SETTINGS[:3]))
-
-    assert all(map(same, asyncio.run(cells()), alone))
-
-
-def test_a_run_does_not_depend_on_those_before(alone):
-    assert all(same(solved(SETTINGS[2]), alone[2]) for _ in range(2))
-    assert alone[2][-1]["factorizations"] == 2
 
 
 def test_what_is_kept_is_the_thread_s_own(alone):

@@ -29,22 +29,15 @@ parabola p departs from a square root soon (:attr:`partialslip_fem.mesh_solution
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import PPoly
 
-from partialslip.result import Clock
 from partialslip.tools.arrays import Array, Mask
 from partialslip.tools.bars import BARS, LEAST_SHEAR
 from partialslip_fem.locked import locked_in
 from partialslip_fem.mesh_solution import MeshSolution
 from partialslip_fem.mortar import within_cells
-from partialslip_fem.problem import ScaledProblem
-from partialslip_fem.solving import solve_on_meshes
-
-# accuracy: The order below costs least, but P2 and P1 lock towards nu = 0.5, so that their differences are no errors.
-NEIGHBOUR = {1: 2, 2: 3, 3: 4, 4: 3, 6: 5}
 
 END_KEYS = ("a", "left", "right", "m", "n")
 _SHEARS = ("q", "q1", "q2")
@@ -95,20 +88,6 @@ _BENT = {1: 2.0, 2: 0.2, 3: 0.015, 4: 0.006, 6: 0.0018}
 _ACROSS = 3.0  # accuracy: elements on either side of a kink from which its strength is found
 # accuracy: Errors of p and q, in the error of an end, for Hertz contacts; in other contacts also times the steepness.
 _TRACTIONS = {"p": 8.0, "q": 32.0}
-
-
-def neighbour(solution: MeshSolution, problem: ScaledProblem, width: float, clock: Clock) -> MeshSolution:
-    """Solve ``problem`` on the meshes of ``solution`` with elements of the neighbouring order.
-
-    ``width`` and ``clock`` as for :func:`partialslip_fem.solving.solve_on_meshes`.
-    """
-    return solve_on_meshes(
-        [body.mesh for body in solution.bodies],
-        replace(problem, order=NEIGHBOUR[problem.order]),
-        width,
-        clock,
-        before=solution,
-    )
 
 
 def smooth_errors(

@@ -1,8 +1,9 @@
 """What an accuracy requires of the mesh: element sizes at the ends of zones, growth, round faces and corners.
 
-The constants of this module and of :mod:`partialslip_fem.adapt` change the cost of a run. They do not enter its
-error estimates, except ``_FACET_SHARE``, ``_OF_FACETS``, ``_CORNER_ERROR`` and ``_TILTS``, which are added to these.
-Scripts that measure the constants are named where there are any.
+The constants of this module, of :mod:`partialslip_fem.adapt` and of :mod:`partialslip_fem.grading` change the cost of a
+run. They do not enter its error estimates, except ``_NEIGHBOUR`` there, and ``_FACET_SHARE``, ``_OF_FACETS``,
+``_CORNER_ERROR`` and ``_TILTS``, which are added to these. Scripts that measure the constants are named where there are
+any.
 """
 
 import math
@@ -12,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from partialslip.result.refining import worst
 from partialslip.tools.arrays import Array
 from partialslip.tools.bars import BARS
 from partialslip_fem import estimate
@@ -87,6 +89,30 @@ class OutlineErrors(NamedTuple):
         return cls(facet_error, corner_error, errors)
 
 
+class NextMesh(NamedTuple):
+    """Element size at the ends in contact half-widths, ``growth`` away from them, and by which factor the elements at
+    the ends are ``finer`` than on the mesh before."""
+
+    size: float
+    growth: float
+    finer: float
+
+
+class MeshPlan(NamedTuple):
+    """What the next ``mesh`` is made of: elements of ``order``, whose size at the ends is on the way to ``enough``;
+    ``outline``: what becomes of round faces and corners."""
+
+    mesh: NextMesh
+    order: int
+    enough: float
+    outline: OutlineErrors
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the elements at the ends are as small as is enough."""
+        return size_reached(self.mesh.size, self.enough)
+
+
 @dataclass(frozen=True)
 class Goal:
     """What one ``accuracy`` requires of the mesh and of the estimated errors.
@@ -127,14 +153,18 @@ class Goal:
         size = min(size, estimate.stick_element_size(solution, gaps(solution, problem), self.end_error))
         return min(max(size, FINEST), COARSEST / 2)
 
-
-class NextMesh(NamedTuple):
-    """Element size at the ends in contact half-widths, ``growth`` away from them, and by which factor the elements at
-    the ends are ``finer`` than on the mesh before."""
-
-    size: float
-    growth: float
-    finer: float
+    def plan(self, before: MeshPlan, solution: MeshSolution, problem: ScaledProblem, least: float) -> MeshPlan:
+        """The mesh after that of ``before`` and its ``solution``; with elements of the same size where the contact line
+        cut the contact. ``least`` as for :func:`next_mesh`."""
+        order, (size, _, finer), enough = problem.order, before.mesh, self.element_size(solution, problem)
+        mesh = next_mesh(size, finer, enough, least, order)
+        if order > ON_THE_WAY and not size_reached(mesh.size, enough):
+            order = ON_THE_WAY
+            mesh = next_mesh(size, finer, enough, growth_at(self.accuracy, order), order)
+        if not solution.enclosed:
+            return before._replace(order=order, enough=enough)
+        on_the_way = None if size_reached(mesh.size, enough) else mesh
+        return MeshPlan(mesh, order, enough, OutlineErrors.at(self.accuracy, problem, on_the_way))
 
 
 def swept_size(accuracy: float) -> float:
@@ -170,29 +200,25 @@ def size_reached(size: float, goal: float) -> bool:
     return size <= _REACHED * goal
 
 
-def course(size: float, finer: float, goal: float, least: float, order: int) -> list[NextMesh]:
-    """The meshes from element ``size`` at the ends to ``goal``.
+def next_mesh(size: float, finer: float, goal: float, least: float, order: int) -> NextMesh:
+    """The next mesh on the way from element ``size`` at the ends to ``goal``.
 
     Parameters
     ----------
     size, goal : float
         In contact half-widths.
     finer : float
-        Refinement of the next mesh, if ``size`` has reached ``goal``; otherwise equal steps of at most ``FINER``.
+        Refinement, if ``size`` has reached ``goal``; otherwise equal steps of at most ``FINER``.
     least : float
-        Growth of the last mesh; the growth of the meshes before follows from the element size of the next one.
+        Growth of the last mesh; that of meshes before follows from the element size of the next one.
     order : int
         Polynomial order of the elements.
     """
     if not size_reached(size, goal):
         finer = (size / goal) ** (1 / math.ceil(math.log(size / goal, FINER)))
-    meshes = []
-    while True:
-        size = max(size / finer, FINEST)
-        growth = least if size_reached(size, goal) else max(least, growth_for(_KNOWN * size / finer, order))
-        meshes.append(NextMesh(size, growth, finer))
-        if size <= max(_REACHED * goal, FINEST):
-            return meshes
+    size = max(size / finer, FINEST)
+    growth = least if size_reached(size, goal) else max(least, growth_for(_KNOWN * size / finer, order))
+    return NextMesh(size, growth, finer)
 
 
 def growth_for(error: float, order: int) -> float:
@@ -243,11 +269,6 @@ def gaps(solution: MeshSolution, problem: ScaledProblem) -> Array:
         across[2:4] = apart[2, 3]
         apart[2, 3] = apart[3, 2] = np.inf
     return np.maximum(np.array([across, apart.min(axis=1)]) / solution.half_width, _NO_GAP)
-
-
-def worst(errors: Mapping[str, float]) -> float:
-    """The largest of ``errors``, each divided by its bar relative to the bar of an end; 0 if there are none."""
-    return max((error / BARS[key] for key, error in errors.items()), default=0.0)
 
 
 def _far_apart(solution: MeshSolution) -> tuple[Array, Array, Array, Array]:

@@ -7,7 +7,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import PPoly
 
-from partialslip.friction.active_set import Solution
+from partialslip.friction.active_set import Solution, spread
+from partialslip.friction.contact_line import common_ends
 from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History
 from partialslip.friction.pressing import Pressed
@@ -23,15 +24,11 @@ _TOUCHES = 1e-9
 
 
 @dataclass(frozen=True)
-class MeshSolution:
-    """Contact forces, contact ends and stick zone on one mesh of each body.
+class ContactForces:
+    """Contact forces along the load path, on nodes of the lower contact line.
 
     Parameters
     ----------
-    bodies : tuple of CondensedBody
-        The lower and the upper body; one entry if the bodies are mirror images.
-    factored : int
-        Factorisations made for this solution.
     nodes : (k,) int array
         Nodes of the lower contact line that are in contact at load point 1 or 2.
     pressing : Solution
@@ -40,16 +37,8 @@ class MeshSolution:
         The largest normal forces on the path, on all nodes of the contact line.
     history : History or None
         Tangential forces on ``nodes`` along the load path; None without friction.
-    left, right : float
-        Ends of the contact at load point 2.
-    stick : StickInterval or None
-        Stick zone, if there is one.
-    ends_at_1 : (float, float) or ()
-        Ends of the contact at load point 1, if they can differ from those at load point 2.
-    kinks : tuple of float
-        Points where q1 or q2, but not q2 - q1, has a kink, besides the ends of the stick zone.
-    coupled : bool
-        Whether p and q were solved together.
+    first : (n,) array or None
+        Normal forces on all nodes of the contact line at load point 1, where the pressure varies or bodies are coupled.
     pressed : Pressed or None
         How coupled bodies were pressed together before the load path.
     step_errors : mapping of str to float
@@ -58,49 +47,20 @@ class MeshSolution:
         The same of the load path of coupled bodies, besides the steps in which they were pressed together.
     path_moves : (2, 2) array
         Errors of the displacement of the plates, and of Q, at load points 1 and 2 (columns), of the same load path.
-    dissimilar : bool
-        Whether shear moves surfaces along y as it does in half-planes of unlike materials (Dundurs' beta is not 0).
-    relative : Relative or None
-        Compliances of the nodes of the contact line, of two finite bodies.
-    first : (n,) array or None
-        Where the pressure varies: normal forces on all nodes of the contact line at load point 1.
-    moving : bool
-        Whether the pressure varies.
-    largest : int
-        Load point with the larger P, 1 or 2, whose contact scales the results.
-    passing : tuple of float
-        Points where q has a kink at single load points, but neither q1 nor q2 has.
     trail : Trail or None
         Which nodes of coupled bodies touch and slip in each step.
-    fits : (e,) array
-        Distances between the ends of the contact that many and few vertices of the mesh tell, of the 2 ends at load
-        point 2 and the ``ends_at_1``: errors of the fit.
     """
 
-    bodies: tuple[CondensedBody, ...]
-    factored: int
     nodes: Indices
     pressing: Solution
     most: Array
-    history: History | None
-    left: float
-    right: float
-    stick: StickInterval | None
-    ends_at_1: tuple[float, float] | tuple[()] = ()
-    kinks: tuple[float, ...] = ()
-    coupled: bool = False
+    history: History | None = None
+    first: Array | None = None
     pressed: Pressed | None = None
     step_errors: Mapping[str, float] = field(default_factory=dict)
-    first: Array | None = None
-    moving: bool = False
-    largest: int = 2
-    passing: tuple[float, ...] = ()
-    trail: Trail | None = None
     path_errors: Mapping[str, float] = field(default_factory=dict)
     path_moves: Array = field(default_factory=lambda: np.zeros((2, 2)))
-    dissimilar: bool = False
-    relative: Relative | None = None
-    fits: Array = field(default_factory=lambda: np.zeros(2))
+    trail: Trail | None = None
 
     @property
     def slips_when_pressed(self) -> bool:
@@ -110,6 +70,91 @@ class MeshSolution:
         """
         still = self.history is not None and not self.history.path.moves
         return bool(still and self.pressed and self.pressed.slipped())
+
+    @property
+    def iterations(self) -> int:
+        """Linear solves of the active-set iterations for normal contact and friction."""
+        return self.pressing.iterations + (self.history.iterations if self.history else 0)
+
+
+@dataclass(frozen=True)
+class Zones:
+    """Contact and stick zone.
+
+    Parameters
+    ----------
+    left, right : float
+        Ends of the contact at load point 2.
+    ends_at_1 : (float, float) or ()
+        Ends of the contact at load point 1, if they can differ from those at load point 2.
+    fits : (e,) array
+        Distances between the ends of the contact that many and few vertices of the mesh tell, of the 2 ends at load
+        point 2 and the ``ends_at_1``: errors of the fit.
+    stick : StickInterval or None
+        Stick zone, if there is one.
+    kinks : tuple of float
+        Points where q1 or q2, but not q2 - q1, has a kink, besides the ends of the stick zone.
+    passing : tuple of float
+        Points where q has a kink at single load points, but neither q1 nor q2 has.
+    """
+
+    left: float
+    right: float
+    ends_at_1: tuple[float, float] | tuple[()]
+    fits: Array
+    stick: StickInterval | None
+    kinks: tuple[float, ...]
+    passing: tuple[float, ...]
+
+    @property
+    def zone_ends(self) -> Array:
+        """Points to refine at: ends of the contact at load point 2, of the stick zone, of the contact at load point
+        1."""
+        stick = (self.stick.left, self.stick.right) if self.stick else ()
+        return np.array([self.left, self.right, *stick, *self.ends_at_1])
+
+    @property
+    def contact_end_places(self) -> tuple[list[int], list[int]]:
+        """Indices in ``zone_ends`` of the left and of the right ends of the contact."""
+        count = len(self.zone_ends)
+        return ([0, count - 2], [1, count - 1]) if self.ends_at_1 else ([0], [1])
+
+    @property
+    def contact_ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Ends of the contact at load points 1 and 2."""
+        second = self.left, self.right
+        return (self.ends_at_1 or second), second
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshSolution(ContactForces, Zones):
+    """Contact forces and zones on one mesh of each body.
+
+    Parameters
+    ----------
+    bodies : tuple of CondensedBody
+        The lower and the upper body; one entry if the bodies are mirror images.
+    factored : int
+        Factorisations made for this solution.
+    relative : Relative or None
+        Compliances of the nodes of the contact line, of two finite bodies.
+    coupled : bool
+        Whether p and q were solved together.
+    dissimilar : bool
+        Whether shear moves surfaces along y as it does in half-planes of unlike materials (Dundurs' beta is not 0).
+    moving : bool
+        Whether the pressure varies.
+    largest : int
+        Load point with the larger P, 1 or 2, whose contact scales the results.
+    """
+
+    bodies: tuple[CondensedBody, ...]
+    factored: int
+    relative: Relative | None
+    coupled: bool
+    dissimilar: bool
+    moving: bool
+    largest: int
 
     def slipping(self, x: Array) -> npt.NDArray[np.int8] | None:
         """Signs of slip at ``x`` (k,) under loads that grow from nothing, 0 where the surfaces stick; None without
@@ -144,13 +189,6 @@ class MeshSolution:
         """Degrees of freedom of all bodies."""
         return sum(each.body.unknowns for each in self.bodies)
 
-    @property
-    def zone_ends(self) -> Array:
-        """Points to refine at: ends of the contact at load point 2, of the stick zone, of the contact at load point
-        1."""
-        stick = (self.stick.left, self.stick.right) if self.stick else ()
-        return np.array([self.left, self.right, *stick, *self.ends_at_1])
-
     def element_sizes(self, points: Array) -> Array:
         """Sizes of the elements of the contact line that ``points`` (k,) lie in, (k,): each the mean of an element
         and its two neighbours, which matter where elements grow fast."""
@@ -165,18 +203,6 @@ class MeshSolution:
         share = (points - vertices[after - 1]) / (vertices[after] - vertices[after - 1])
         nearest: Array = np.clip(np.minimum(share, 1 - share), 0.0, 0.5)
         return nearest
-
-    @property
-    def contact_end_places(self) -> tuple[list[int], list[int]]:
-        """Indices in ``zone_ends`` of the left and of the right ends of the contact."""
-        count = len(self.zone_ends)
-        return ([0, count - 2], [1, count - 1]) if self.ends_at_1 else ([0], [1])
-
-    @property
-    def contact_ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Ends of the contact at load points 1 and 2."""
-        second = self.left, self.right
-        return (self.ends_at_1 or second), second
 
     @property
     def enclosed(self) -> bool:
@@ -202,10 +228,7 @@ class MeshSolution:
     @property
     def common(self) -> tuple[float, float] | None:
         """Ends of what is in contact at both load points; None where the pressure is constant."""
-        if not self.moving:
-            return None
-        (left1, right1), (left2, right2) = self.contact_ends
-        return max(left1, left2), min(right1, right2)
+        return common_ends(self.contact_ends) if self.moving else None
 
     @property
     def swept(self) -> list[tuple[float, float]]:
@@ -225,23 +248,13 @@ class MeshSolution:
         left, right = self.contact_ends[self.largest - 1]
         return (right - left) / 2
 
-    @property
-    def iterations(self) -> int:
-        """Linear solves of the active-set iterations for normal contact and friction."""
-        return self.pressing.iterations + (self.history.iterations if self.history else 0)
-
     def pressure(self) -> PPoly:
         """p along the contact line at load point 2."""
         return traction(self.lower, self.pressing.x)
 
     def pressures(self) -> tuple[PPoly, PPoly] | None:
         """p at load points 1 and 2; None if p is the same at both."""
-        if self.first is not None:
-            return traction(self.lower, self.first), self.pressure()
-        if not self.history or not self.coupled:
-            return None
-        first, second = (self.shear(forces) for forces in self.history.pressures)
-        return first, second
+        return None if self.first is None else (traction(self.lower, self.first), self.pressure())
 
     def tension(self) -> float:
         """Largest -p at both load points in cells of which, as of the cells on both sides, all nodes are pressed; 0 if
@@ -278,9 +291,7 @@ class MeshSolution:
 
     def on_line(self, values: Array) -> Array:
         """Extend ``values`` (k,) on the nodes in contact by zeros to the whole contact line, (n,)."""
-        result = np.zeros(len(self.lower.x))
-        result[self.nodes] = values
-        return result
+        return spread(values, self.nodes, len(self.lower.x))
 
 
 @dataclass(frozen=True)

@@ -28,9 +28,7 @@ def plates_of(problem: ScaledProblem, solution: MeshSolution) -> Plates | None:
     if not C or not history:
         return None
     last = solution.pressing.x
-    first = solution.first
-    if first is None:
-        first = solution.on_line(history.pressures[0]) if solution.coupled else last
+    first = last if solution.first is None else solution.first
     gap, lower = projected(solution.lower, problem.gap, problem.breaks), solution.bodies[0]
     opened = [gap - strain * lower.stretch[1] for strain, _ in problem.strains]
     sheared = [solution.on_line(q) for q in history.at_ends]

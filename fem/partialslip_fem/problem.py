@@ -240,6 +240,11 @@ class ScaledProblem:
         """The sharp ones of these points, for functions that are smooth over the ``length``."""
         return tuple(kink / self.length - self.origin for kink in self.friction.sharp_kinks(length * self.length))
 
+    @property
+    def coarsest(self) -> float:
+        """Fineness of the coarsest body, of which element sizes are."""
+        return max(part.fineness for part in self.parts)
+
     def bent(self, low: float, high: float) -> tuple[Array, Array]:
         """The ``kinks`` between two points, and by how much the gap's curvature jumps there, (k,) each."""
         kinks = np.array(self.kinks)
@@ -394,7 +399,9 @@ def _finite(plain: Part, body: Body | None, scene: Scene, L: float) -> Part:
     if body.mesh is not None:
         needed = {*itertools.chain(*_held(body.support, False))} | ({"right"} if body.pulled else set())
         field = f"bodies.{part.name}.mesh"
-        return replace(part, mesh=read(field, body.mesh, (body.unit or 1.0) / L, face, sorted(needed)))
+        unit = (body.unit or 1.0) / L
+        groups = body.groups.given if body.groups else {}
+        return replace(part, mesh=read(field, body.mesh, unit, face, sorted(needed), body.body, groups))
     return replace(
         part,
         extent=((body.width or 0.0) / 2 / L, (body.height or 0.0) / L),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PPoly
 
+from partialslip.friction.contact_line import ContactLine
 from partialslip.result import TractionAt
 from partialslip.tools.arrays import Array
 from partialslip_fem.elasticity import DiscreteBody
@@ -18,6 +19,20 @@ def traction(body: DiscreteBody, forces: Array) -> PPoly:
     would give an oscillating error of h^2 p''; the mass matrix inverts the integrals and preserves the resultant.
     """
     return polynomials(body.x, body.mass_factor.solve(forces), body.order)
+
+
+def contact_line(body: DiscreteBody, beta: float = 0.0) -> ContactLine:
+    """The contact line of ``body``, for Dundurs' ``beta``: cells bear the integrals of the equivalent traction."""
+    vertices = body.x[:: body.order]
+
+    def left_of(forces: Array, points: Array) -> Array:
+        resultant: Array = traction(body, forces).antiderivative()(points)
+        return resultant
+
+    def cell_forces(forces: Array) -> Array:
+        return np.diff(left_of(forces, vertices))
+
+    return ContactLine(body.x, body.weights, vertices, beta, cell_forces, left_of)
 
 
 def polynomials(x: Array, values: Array, order: int) -> PPoly:

@@ -7,9 +7,8 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from partialslip.friction.load_path import lower_strain
-from partialslip.result.below import under_pressure, under_shear, under_tension
+from partialslip.result.below import PiecewiseCauchy, under_pressure, under_shear, under_tension
 from partialslip.result.phases import Phases
-from partialslip.result.piecewise import PiecewiseCauchy
 from partialslip.scene import Scene
 from partialslip.tools.arrays import Array
 from partialslip_fem.factor import default_backend

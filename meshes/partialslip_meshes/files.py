@@ -6,7 +6,7 @@ import re
 import sys
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
@@ -42,17 +42,17 @@ def quiet() -> Iterator[io.StringIO]:
             yield printed
 
 
-def check_files(path: str | os.PathLike[str], named: str) -> list[bytes]:
+def check_files(path: str | os.PathLike[str], named: str) -> dict[Path, bytes]:
     """Return the texts of ``path`` and of the files that it refers to, of formats that refer to files.
 
     Raise InputError if one of them cannot be read or is not a regular file: meshio would wait for a pipe, and read a
     device without end. ``named`` is the name of ``path`` in messages."""
-    found, texts = {Path(path): named}, list[bytes]()
+    found, texts = {Path(path): named}, dict[Path, bytes]()
     for file, its in (unseen := list(found.items())):
         with opened(file, LARGEST_MESH, its) as content:
             pattern = _REFERS.get(file.suffix.lower())
             text = content.read() if pattern else b""
-        texts += [text] if pattern else []
+        texts |= {file: text} if pattern else {}
         for other in _referred(file, pattern, text) if pattern else ():
             if other not in found:
                 found[other] = f"{named}: {other}"
@@ -60,6 +60,17 @@ def check_files(path: str | os.PathLike[str], named: str) -> list[bytes]:
         if len(found) > _MOST:
             raise InputError(f"{named}: cannot be read: refers to more than {_MOST} files")
     return texts
+
+
+def spliced(path: Path, texts: Mapping[Path, bytes], named: str, above: tuple[Path, ...] = ()) -> bytes:
+    """Return the deck of Abaqus at ``path`` with the files that it includes in their places, from ``texts``."""
+    if path in above:
+        raise InputError(f"{named}: {path}: must not include itself")
+
+    def content(line: re.Match[bytes]) -> bytes:
+        return b"\n".join(spliced(each, texts, named, (*above, path)) for each in _referred(path, _INCLUDES, line[0]))
+
+    return _INCLUDES.sub(content, texts[path])
 
 
 def _referred(file: Path, pattern: re.Pattern[bytes], text: bytes) -> Iterator[Path]:

@@ -101,8 +101,8 @@ _mesher: _Mesher | None = None
 def ask(request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
     """Make a mesh in the gmsh process, one thread at a time. A process that dies is replaced once.
 
-    ``request`` has the arguments of :func:`partialslip_meshes.mesher.mesh`. Returns the same, and in the dict "cpu_s",
-    the CPU seconds of the mesh.
+    ``request`` has the arguments of :func:`partialslip_meshes.mesher.mesh`, or of ``rewrite``. Returns the same, and in
+    the dict "cpu_s", the CPU seconds of the mesh.
 
     Raises
     ------

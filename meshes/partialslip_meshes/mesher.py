@@ -91,6 +91,8 @@ def _answer(request: Mapping[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
     except OSError as error:  # the wheel installs everywhere, but needs system libraries
         return {"error": "library", "text": str(error)}, []
     try:
+        if "path" in request:
+            return rewrite(gmsh, request["path"], request["target"])
         return mesh(gmsh, **{key: value for key, value in request.items() if key != "bytes"})
     except MemoryError:
         return {"error": "memory", "text": ""}, []
@@ -134,6 +136,24 @@ def mesh(gmsh: ModuleType, corners: int, smooth: float, options: Mapping[str, fl
     finally:
         gmsh.finalize()
     return {"lines": list(lines)}, [array("Q", tags).tobytes(), array("d", coordinates).tobytes(), *cells]
+
+
+def rewrite(gmsh: ModuleType, path: str, target: str) -> tuple[dict[str, Any], list[bytes]]:
+    """Write the elements of surfaces and of physical groups in the file ``path`` into the file ``target``, in format
+    4.1 without parameters, which meshio reads."""
+    gmsh.initialize([], readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(path)
+        rest = [tag for _, tag in gmsh.model.getEntities(2) if not len(gmsh.model.getPhysicalGroupsForEntity(2, tag))]
+        if rest:
+            gmsh.model.addPhysicalGroup(2, rest)
+        for option, value in {"MshFileVersion": 4.1, "Binary": 0, "SaveAll": 0, "SaveParametric": 0}.items():
+            gmsh.option.setNumber(f"Mesh.{option}", value)
+        gmsh.write(target)
+    finally:
+        gmsh.finalize()
+    return {}, []
 
 
 def _cells(gmsh: ModuleType, dimension: int, entities: Sequence[int]) -> bytes:

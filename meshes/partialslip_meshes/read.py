@@ -1,34 +1,34 @@
 """Read and check a body's mesh from a file of another tool, with meshio."""
 
-from collections.abc import Callable, Iterator, Sequence
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.tools.errors import InputError, MissingLibraryError
+from partialslip.tools.errors import InputError, MissingLibraryError, PartialslipError
 from partialslip.tools.inputfile import LARGEST_MESH, read_bytes
-from partialslip_meshes import deck
-from partialslip_meshes.files import check_files, quiet
+from partialslip_meshes import gmsh
+from partialslip_meshes.abaqus import read_deck
+from partialslip_meshes.files import check_files, quiet, spliced
+from partialslip_meshes.found import Found, from_meshio, joined
 from partialslip_meshes.mesh import Mesh
-
-if TYPE_CHECKING:
-    import meshio
 
 _Array = npt.NDArray[np.float64]
 _Indices = npt.NDArray[np.int64]
 
 READ_FORMATS = (".msh", ".inp", ".med", ".vtu")
 BOUNDARY_NAMES = ("contact", "face", "back", "left", "right")
-_IGNORED = {"vertex": 1, "line": 2, "line3": 3}  # fixed: nodes of cells that are allowed besides elements
-_NODES = {"triangle": 3, "triangle6": 6, "triangle7": 7, "quad": 4, "quad8": 8, "quad9": 9} | _IGNORED
+_NODES = {"triangle": 3, "triangle6": 6, "triangle7": 7, "quad": 4, "quad8": 8, "quad9": 9}  # fixed: of each type
 _LARGEST = 1e30  # limit: coordinate
 _FLAT = 1e-12  # limit: of the square of the longest side: an element with less area counts as empty
 _CRACK = 1e-6  # limit: of the square of its length: a hole with less area counts as a crack
 _OFF = 1e-4  # limit: of the length: largest deviation of the contact line from its shape, and of points from a plane
 _MIDDLE = 0.25  # limit: of a side: largest deviation of its middle node from the middle
 _FEWEST = 4  # limit: edges of a contact line
+_DAMAGED = "the file is damaged or of another format"
 
 
 def read(
@@ -37,6 +37,8 @@ def read(
     unit: float = 1.0,
     face: Callable[[_Array], _Array] | None = None,
     needed: Sequence[str] = ("back",),
+    body: str | int | None = None,
+    groups: Mapping[str, str | int] | None = None,
 ) -> Mesh:
     """Read the mesh of a body and move it below the line y = 0, which its contact line touches.
 
@@ -45,7 +47,7 @@ def read(
 
     Lines of the boundary are the groups ``contact``, ``back``, ``left``, ``right`` and ``face`` (optional: the rest of
     the contact line's side, from left to right), in upper or lower case, of edges or of nodes: physical groups (.msh),
-    sets (.inp), groups (.med), or nonzero cell or point data (any format).
+    sets and surfaces (.inp), groups (.med), or nonzero cell or point data (any format).
 
     Parameters
     ----------
@@ -59,6 +61,11 @@ def read(
         Depth of the contact line below y = 0 at x, in the returned lengths; by default 0.
     needed : sequence of str
         Lines that must exist besides the contact line. Edges of the contact line that touch them are dropped.
+    body : str or int, optional
+        Group of elements, part or instance that is the body, where the file has more; physical groups also by number.
+        What lies outside it is left out.
+    groups : dict, optional
+        Names in the file, or numbers of physical groups, of the lines of the boundary.
 
     Raises
     ------
@@ -70,13 +77,17 @@ def read(
     refuse = _refusal(name, path)
     found = _load(name, path, refuse)
     points = _in_plane(found.points, refuse) * unit
-    corners = _ccw(points, _triangles(found, points, refuse), refuse)
-    boundary = _boundary(corners, len(points), refuse)
+    corners = _ccw(points, _triangles(found, points, _chosen(found, body, refuse), refuse), refuse)
+    boundary = _boundary(corners, len(points), found, refuse)
     _check_cracks(points, boundary, refuse)
-    lines = {key: edges for key, edges in _lines(found, boundary, refuse) if len(edges)}
+    lines = {key: edges for key, edges in _lines(found, corners, boundary, groups or {}, refuse) if len(edges)}
     for key in ("contact", *needed):
         if key not in lines:
-            refuse(f"must have a group {key!r} of edges or nodes of its boundary")
+            here = found.named(bodies=False)
+            others = (
+                f"the file has {here}: type groups = {{ {key} = ... }}" if here else "the file has no groups of them"
+            )
+            refuse(f"must have a group {key!r} of edges or nodes of its boundary; {others}")
     every = np.concatenate(list(lines.values()))
     if len(np.unique(every, axis=0)) < len(every):
         refuse(f"edges must be in one group each; an edge is in two of the groups {', '.join(lines)}")
@@ -106,34 +117,67 @@ def _refusal(name: str, path: str) -> Refuse:
     return refuse
 
 
-def _load(name: str, path: str, refuse: Refuse) -> "meshio.Mesh":
+def _load(name: str, path: str, refuse: Refuse) -> Found:
     if (suffix := Path(path).suffix.lower()) not in READ_FORMATS:
         refuse(f"must be a file {', '.join(READ_FORMATS[:-1])} or {READ_FORMATS[-1]}")
-    texts = check_files(path, f"{name} = {path!r}")
-    if suffix == ".inp" and (wrong := deck.fault(texts, BOUNDARY_NAMES)):
-        refuse(wrong)
+    named = f"{name} = {path!r}"
+    texts = check_files(path, named)
+    if suffix == ".inp":
+        try:
+            return read_deck(spliced(Path(path), texts, named).decode("utf-8", "replace"))
+        except InputError as error:
+            refuse(str(error).removeprefix(f"{named}: "))
     if suffix == ".msh":
         text = read_bytes(path, LARGEST_MESH)
         for section in (b"$Nodes", b"$Elements"):
             if (count := text.count(b"\n" + section)) > 1:  # meshio keeps the last one
                 refuse(f"must have one section {section.decode()}, not {count}")
-    printed, damaged = "", "the file is damaged or of another format"
+    try:
+        return _by_meshio(name, path, refuse)
+    except InputError:
+        if suffix not in (".msh", ".med"):
+            raise
+        with tempfile.TemporaryDirectory() as folder:  # what gmsh reads and meshio does not
+            target = str(Path(folder) / "body.msh")
+            try:
+                gmsh.ask({"path": str(Path(path).absolute()), "target": target})
+            except PartialslipError:
+                refuse(f"cannot be read: {_DAMAGED}")
+            return _by_meshio(name, target, refuse)
+
+
+def _by_meshio(name: str, path: str, refuse: Refuse) -> Found:
+    printed = ""
     try:
         # meshio prints what is wrong and exits
         with quiet() as output, np.errstate(all="ignore"):
             import meshio  # slow to import, so only here
 
             try:
-                return meshio.read(path)
+                return from_meshio(meshio.read(path))
             finally:
                 printed = output.getvalue()
     except ModuleNotFoundError as error:
         raise MissingLibraryError(f"{name}: {error.name} is missing; pip install partialslip[med]") from None
     except OSError as error:
-        refuse(f"cannot be read: {error.strerror or damaged}")
+        refuse(f"cannot be read: {error.strerror or _DAMAGED}")
     except (Exception, SystemExit):
-        why = printed.partition("Error:")[0].strip() or damaged
+        why = printed.partition("Error:")[0].strip() or _DAMAGED
         refuse(f"cannot be read: {' '.join(why.split())}")
+
+
+def _chosen(found: Found, body: str | int | None, refuse: Refuse) -> npt.NDArray[np.bool_]:
+    """Which elements belong to the ``body``, through all blocks; without one all do."""
+    count = sum(len(cells) for _, cells in found.cells)
+    if body is None:
+        return np.ones(count, dtype=bool)
+    group = found.groups.get(str(body).lower())
+    chosen = np.zeros(count, dtype=bool)
+    chosen[joined(group.elements) if group else []] = True
+    if not chosen.any():
+        here = found.named(bodies=True)
+        refuse(f"must have elements of the body {body!r}; the file has {here or 'no groups of elements'}")
+    return chosen
 
 
 def _in_plane(points: _Array, refuse: Refuse) -> _Array:
@@ -147,22 +191,22 @@ def _in_plane(points: _Array, refuse: Refuse) -> _Array:
     return points[:, :2]
 
 
-def _triangles(found: "meshio.Mesh", points: _Array, refuse: Refuse) -> _Indices:
-    """Corners of all elements, (t, 3); quadrilaterals are split along the shorter diagonal."""
-    if unknown := sorted({block.type for block in found.cells} - {*_NODES}):
+def _triangles(found: Found, points: _Array, chosen: npt.NDArray[np.bool_], refuse: Refuse) -> _Indices:
+    """Corners of the ``chosen`` elements, (t, 3); quadrilaterals are split along the shorter diagonal."""
+    if unknown := sorted({kind for kind, _ in found.cells} - {*_NODES}):
         refuse(f"must have triangles and quadrilaterals, linear or quadratic, not {', '.join(unknown)}")
     parts = [np.empty((0, 3), dtype=np.int64)]
-    for block in found.cells:
-        cells = np.asarray(block.data, dtype=np.int64)
+    begin = 0
+    for kind, every in found.cells:
+        cells = every[chosen[begin : begin + len(every)]]
+        begin += len(every)
         if not cells.size:
             continue
         if not (cells.min() >= 0 and cells.max() < len(points)):
             refuse("must have elements whose nodes exist")
-        if cells.shape[1:] != (_NODES[block.type],):
+        if cells.shape[1:] != (_NODES[kind],):
             refuse("must have elements with as many nodes as their type")
-        if block.type in _IGNORED:
-            continue
-        count = 3 if block.type.startswith("triangle") else 4
+        count = 3 if kind.startswith("triangle") else 4
         ring = points[cells[:, :count]]
         sides = np.roll(ring, -1, axis=1) - ring
         if cells.shape[1] >= 2 * count:
@@ -192,7 +236,7 @@ def _ccw(points: _Array, corners: _Indices, refuse: Refuse) -> _Indices:
     return np.where((areas > 0)[:, None], corners, corners[:, ::-1])
 
 
-def _boundary(corners: _Indices, count: int, refuse: Refuse) -> _Indices:
+def _boundary(corners: _Indices, count: int, found: Found, refuse: Refuse) -> _Indices:
     """Edges that belong to one triangle only, with the body on their left, (b, 2)."""
     from scipy.sparse import coo_array  # takes long to import
     from scipy.sparse.csgraph import connected_components
@@ -207,7 +251,9 @@ def _boundary(corners: _Indices, count: int, refuse: Refuse) -> _Indices:
     beside, other = (number[shared] % len(corners) for number in (np.arange(len(edges)), order[place]))
     graph = coo_array((np.ones(len(beside)), (beside, other)), shape=(len(corners), len(corners)))
     if (pieces := connected_components(graph)[0]) > 1:
-        refuse(f"must be one piece, connected by common nodes, not {pieces}")
+        here = found.named(bodies=True)
+        others = f"; if it has more bodies, type body = ..., one of {here}" if here else ""
+        refuse(f"must be one piece, connected by common nodes, not {pieces}{others}")
     return edges[~shared]
 
 
@@ -232,49 +278,28 @@ def _check_cracks(points: _Array, boundary: _Indices, refuse: Refuse) -> None:
         refuse(f"must have elements that share whole sides; cracks between elements: {cracks}")
 
 
-def _lines(found: "meshio.Mesh", boundary: _Indices, refuse: Refuse) -> Iterator[tuple[str, _Indices]]:
-    """Name and boundary edges of each group."""
+def _lines(
+    found: Found, corners: _Indices, boundary: _Indices, names: Mapping[str, str | int], refuse: Refuse
+) -> Iterator[tuple[str, _Indices]]:
+    """Name and boundary edges of each line; ``names`` are those of their groups in the file. Members outside the body
+    are left out."""
     known = np.sort(boundary, axis=1)
-    for name in BOUNDARY_NAMES:
-        edges = np.concatenate([np.empty((0, 2), dtype=np.int64), *_edges_of(found, name)])
+    for line in BOUNDARY_NAMES:
+        wanted = str(names.get(line, line))
+        group = found.groups.get(wanted.lower())
+        if line in names and not (group and (group.nodes or group.edges)):
+            here = found.named(bodies=False) or "no groups of edges or nodes"
+            refuse(f"must have the group {wanted!r} of edges or nodes for {line!r}; the file has {here}")
+        edges, members = joined(group.edges if group else [], 2), joined(group.nodes if group else [])
+        for some in (edges, members):
+            if some.size and not (some.min() >= 0 and some.max() < len(found.points)):
+                refuse(f"group {wanted!r} must have nodes that exist")
         nodes = np.zeros(len(found.points), dtype=bool)
-        for some in _nodes_of(found, name):
-            nodes[some] = True
-        if not _among(np.sort(edges, axis=1), known).all():
-            refuse(f"group {name!r} must have edges of the boundary only")
-        yield name, boundary[_among(known, np.sort(edges, axis=1)) | nodes[boundary].all(axis=1)]
-
-
-def _edges_of(found: "meshio.Mesh", name: str) -> Iterator[_Indices]:
-    """Edges of the group ``name`` of line cells, in any of the formats' ways."""
-    ids = {int(number[0]) for key, number in found.field_data.items() if key.lower() == name and len(number) == 2}
-    families = {number for number, keys in getattr(found, "cell_tags", {}).items() if name in map(str.lower, keys)}
-    data = {key.lower(): values for key, values in found.cell_data.items()}
-    sets = {key.lower(): members for key, members in found.cell_sets.items()}
-    for block, cells in enumerate(found.cells):
-        if not cells.type.startswith("line"):
-            continue
-        ends = np.asarray(cells.data, dtype=np.int64)[:, :2]
-        for key, wanted in (("gmsh:physical", ids), ("cell_tags", families)):
-            if key in data and wanted:
-                yield ends[np.isin(data[key][block], list(wanted))]
-        if name in data:
-            yield ends[np.asarray(data[name][block]).reshape(len(ends), -1).any(axis=1)]
-        if len(members := sets.get(name, ())) > block and members[block] is not None:
-            yield ends[np.asarray(members[block], dtype=np.int64)]
-
-
-def _nodes_of(found: "meshio.Mesh", name: str) -> Iterator[_Indices]:
-    """Nodes of the node group ``name``, in any of the formats' ways."""
-    families = [number for number, keys in getattr(found, "point_tags", {}).items() if name in map(str.lower, keys)]
-    for key, values in found.point_data.items():
-        if key == "point_tags" and families:
-            yield np.flatnonzero(np.isin(values, families))
-        elif key.lower() == name:
-            yield np.flatnonzero(np.asarray(values).reshape(len(found.points), -1).any(axis=1))
-    for key, members in found.point_sets.items():
-        if key.lower() == name:
-            yield np.asarray(members, dtype=np.int64)
+        nodes[members] = True
+        inside = np.sort(edges[np.isin(edges, corners).all(axis=1)], axis=1)
+        if not _among(inside, known).all():
+            refuse(f"group {wanted!r} must have edges of the boundary only")
+        yield line, boundary[_among(known, inside) | nodes[boundary].all(axis=1)]
 
 
 def _below(points: _Array, contact: _Indices, refuse: Refuse) -> bool:

@@ -9,7 +9,6 @@ import pytest
 from partialslip import load_scene, run
 
 FIXTURES = Path(__file__).parents[1] / "score"
-COARSE = ("--set", "fem.accuracy=0.1")
 FRD, DAT = (FIXTURES / f"calculix.{ending}" for ending in ("frd", "dat"))
 X = np.linspace(-1.1e-3, 1.1e-3, 23)
 P = 4e8 * np.sqrt(np.maximum(1 - (X / 1e-3) ** 2, 0))
@@ -26,8 +25,6 @@ def lines(text, **changes):
 
 TABLES = [
     ("", "empty: must have a header line"),
-    ("# nothing\n", "empty: must have a header line"),
-    ("\n\n", "empty: must have a header line"),
     ("x,p,dq\n", "line 1: no row of numbers follows"),
     (TABLE.partition("\n")[2].replace("\n", ",1\n"), "line 1: must be a header line with x, p and dq"),
     (TABLE.replace("x,p,dq", "x,p"), "line 2: must have 2 fields, like the header line"),
@@ -40,13 +37,10 @@ TABLES = [
     (TABLE.replace("x,p,dq", "x 2 dq"), "line 1: must be a header line of 3 names, like line 2"),
     (TABLE.replace("\n", ",1\n").replace("x,p,dq,1", "x,p,dq,q"), "'dq', 'q': must be"),
     (lines(TABLE, L3="1,2"), "line 3: must have 3 fields"),
-    (lines(TABLE, L3="1,2,3,4"), "line 3: must have 3 fields"),
     (lines(TABLE, L4="a,2,3"), "line 4: x = 'a': must be a number"),
     (lines(TABLE, L4="1e-4,1 2,3"), "line 4: p = '1 2': must be a number"),
-    (lines(TABLE, L4="1e-4,0x10,3"), "line 4: p = '0x10': must be a number"),
     (lines(TABLE, L4='1e-4,"1,3'), "line 4: must have 3 fields"),
     (lines(TABLE, L4="1e-4,inf,3"), "line 4: p = inf: must be zero or of a size"),
-    (lines(TABLE, L4="1e-4,1,-inf"), "line 4: dq = -inf: must be zero or of a size"),
     (lines(TABLE, L4="1e-4,1e200,3"), "line 4: p = 1e200: must be zero or of a size"),
     (lines(TABLE, L4="1e-4,1e-200,3"), "line 4: p = 1e-200: must be zero or of a size"),
     (TABLE.replace("\n", "\n#"), "line 1: no row of numbers follows"),
@@ -55,7 +49,6 @@ TABLES = [
     ("x,p,dq\n" + "".join(f"{x!r},0,0\n" for x in X.tolist()), "p > 0 at 0 points"),
     ("x,p,dq\n" + "".join(f"{i},{i % 2 * 1e8},0\n" for i in range(60)), "must exceed its noise"),
     ("x,Fn,dFt\n" + "".join(f"{i},{1 + i % 2 * 1e8},0\n" for i in range(60)), "another order (--order)"),
-    ("x,p,dq\n1e-3,1e8,0\n2e-3,1e8,0\n", "p > 0 at 2 points: must be at least 6"),
     ("x,p,dq\n" + "\x00" * 99, "must be text; character 8 is not"),
 ]
 
@@ -82,51 +75,6 @@ def test_no_file(rejected, tmp_path, name):
     if "\0" not in name and len(name) < 100 and "/" not in name:
         (tmp_path / name).mkdir()
         assert "cannot be read" in rejected(None, ["score", "hertz-shear", name])
-
-
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (["score"], "SCENE"),
-        (["score", "hertz-shear"], "FILE: missing"),
-        (["score", "hertz-sheer", "t.csv"], "did you mean 'hertz-shear'?"),
-        (["score", "hertz-shear", "t.csv", "u.csv"], "u.csv: cannot be read"),
-        (["score", "hertz-shear", "t.csv", "--template"], "--template t.csv: must go without a file"),
-        (["score", "hertz-shear", "t.doc"], "must end in .csv, .txt, .tsv, .rpt, .frd, .dat"),
-        (["score", "hertz-shear", "t"], "must end in .csv, .txt, .tsv, .rpt, .frd, .dat"),
-        (["score", "hertz-shear", ""], "must end in .csv, .txt, .tsv, .rpt, .frd, .dat"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1"], "--factors 1: must be three numbers"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,1,x"], "--factors 1,1,x: must be three numbers"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,1,nan"], "--factors 1,1,nan: must be finite and not zero"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,0,1"], "--factors 1,0,1: must be finite and not zero"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,1e200,1"], "must be zero or of a size"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,1e-300,1"], "must be zero or of a size"),
-        (["score", "hertz-shear", "t.csv", "--factors", "1,-1,1"], "pressure must be positive"),
-        (["score", "hertz-shear", "t.csv", "--order", "3"], "--order 3: must be 1 or 2"),
-        (["score", "hertz-shear", "t.csv", "--at", "1,2"], "--at 1,2: must be left out except for .frd and .dat files"),
-        (["score", "hertz-shear", "t.frd", "--at", "1"], "--at 1: must be two whole numbers"),
-        (["score", "hertz-shear", "t.frd", "--at", "1,x"], "--at 1,x: must be two whole numbers"),
-        (["score", "hertz-shear", "t.frd", "--at", "0,1"], "--at 0,1: must be from 1 to 2, contact results of t.frd"),
-        (["score", "hertz-shear", "t.frd", "--at", "1,3"], "--at 1,3: must be from 1 to 2, contact results of t.frd"),
-        (["score", "hertz-shear", "t.csv", "--bar", "0"], "--bar 0: must be one number, or three"),
-        (["score", "hertz-shear", "t.csv", "--bar", "-1"], "--bar -1: must be one number, or three"),
-        (["score", "hertz-shear", "t.csv", "--bar", "nan"], "--bar nan: must be one number, or three"),
-        (["score", "hertz-shear", "t.csv", "--bar", "x"], "--bar x: must be one number, or three"),
-        (["score", "hertz-shear", "t.csv", "--with", "bem"], "bem"),
-        (["score", "hertz-shear", "t.csv", "--out", ""], "must name a folder"),
-        (["score", "hertz-shear", "t.csv", "--out", "t.csv"], "--out t.csv: cannot be written"),
-        (["score", "hertz-shear", "t.csv", "--set", "load.P=1"], "load: exactly one of P, a, p0"),
-        (["score", "hertz-shear", "--template", "--set", "load.p0=0"], "load.p0 = 0: must be > 0"),
-        (["score", "hertz-shear", "--template", "--set", "material.upper.E=1e9", "--set", "material.upper.nu=0.3"],
-         "the bodies differ"),
-        (["score", "hertz-shear", "q.frd", "--set", "load.Q=[1e5,0,-1e5]"], "must be 3 or more, one per load point"),
-    ],
-)  # fmt: skip
-def test_arguments(rejected, tmp_path, arguments, expected):
-    (tmp_path / "t.csv").write_text(TABLE, "utf-8")
-    for name in ("t.frd", "q.frd"):
-        (tmp_path / name).write_bytes(FRD.read_bytes())
-    assert expected in rejected(None, arguments)
 
 
 def swapped(old, new, count=-1):
@@ -237,14 +185,11 @@ def state(tmp_path_factory):
 STATES = {
     "no loads": lambda s: {key: s[key] for key in s if key != "loads"},
     "three loads": lambda s: s | {"loads": s["loads"][:3]},
-    "nan load": lambda s: s | {"loads": s["loads"] * np.nan},
     "no cells": lambda s: s | {"cells": s["cells"][:0]},
     "one cell end": lambda s: s | {"cells": s["cells"][:1], "q": s["q"][:, :0], "p": s["p"][:, :0]},
     "cells turned round": lambda s: s | {"cells": s["cells"][::-1]},
-    "a cell twice": lambda s: s | {"cells": np.append(s["cells"][:-1], s["cells"][-2])},
     "nan cell": lambda s: s | {"cells": np.append(s["cells"][:-1], np.nan)},
     "cells are one number": lambda s: s | {"cells": np.float64(1.0)},
-    "all are one number": lambda s: dict.fromkeys(s, np.float64(1.0)),
     "cells in two directions": lambda s: s | {"cells": np.stack([s["cells"]] * 2)},
     "p of fewer cells": lambda s: s | {"p": s["p"][:, 1:]},
     "p without powers": lambda s: s | {"p": s["p"][:0]},
@@ -259,8 +204,6 @@ STATES = {
     "q beyond the bound": lambda s: s | {"q": s["q"] + 10 * s["p"].max()},
     "elsewhere": lambda s: s | {"cells": s["cells"] + 1.0},
     "error below zero": lambda s: s | {"q_error": np.float64(-1e-3)},
-    "error that is no number": lambda s: s | {"q_error": np.float64(np.nan)},
-    "errors": lambda s: s | {"q_error": np.full(2, 1e-3)},
     "of another size": lambda s: s | {"cells": s["cells"] * 1e-6},
 }
 
@@ -269,22 +212,3 @@ STATES = {
 def test_states(rejected, tmp_path, state, fault):
     np.savez(tmp_path / "s.npz", **STATES[fault](state))
     rejected(None, ["run", "hertz-shear", "--with", "march", "--start", "s.npz"])
-
-
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (["--start", "none.npz"], "none.npz: cannot be read"),
-        (["--start", ""], "cannot be read"),
-        (["--start", "."], "cannot be read"),
-        (["--start", "nul\0"], "nul"),
-        (["--save", ""], "--save '': must name a file"),
-        (["--save", "."], "is a folder"),
-        (["--save", "nul\0.npz"], "cannot be written"),
-        (["--save", "bench.toml/s.npz"], "cannot be written"),
-        (["--save", "s.npz", "--with", "exact"], "no method has followed a path"),
-    ],
-)
-def test_places_of_states(rejected, arguments, expected):
-    """Not even the results are written where the state cannot be."""
-    assert expected in rejected("", ["run", "hertz-shear", "--with", "march", *COARSE, *arguments])

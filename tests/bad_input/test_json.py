@@ -10,7 +10,7 @@ from refusing import line_of
 
 from partialslip import InputError, load_result, load_rig
 from partialslip.study.batch.ledger import Ledger, _sealed
-from partialslip.study.cost.ladder import read_peers
+from partialslip.study.cost import read_peers
 from partialslip.tools.strictjson import decoded, parsed
 from partialslip.verify.benchmark import read_problems, read_submission
 from partialslip.verify.verdicts import was_finished
@@ -49,10 +49,6 @@ BAD = {
     "a line in text": ('{"a\n": 1}', "not JSON"),
     "more": ('{"a": 1} {"a": 2}', "not JSON: Extra data"),
     "a comma": ('{"a": 1,}', "not JSON"),
-    "single quotes": ("{'a': 1}", "not JSON"),
-    "hexadecimal": ('{"a": 0x10}', "not JSON"),
-    "leading zero": ('{"a": 01}', "not JSON"),
-    "plus": ('{"a": +1}', "not JSON"),
     "wide digits": ('{"a": \uff11}', "not JSON"),
     "empty": ("", "not JSON"),
     "not UTF-8": (b'{"a": "\xff"}', r"not UTF-8 text \(byte 7\)"),

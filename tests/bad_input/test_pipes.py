@@ -12,7 +12,7 @@ from tests.bad_input.conftest import check
 
 from partialslip import InputError, load_result, load_rig, load_scene, load_state, sweep
 from partialslip.cli import main
-from partialslip.scene.points import read_points
+from partialslip.scene.measured import read_points
 from partialslip.study.batch.ledger import Ledger
 from partialslip.verify.benchmark import read_problems, read_submission
 from partialslip.verify.document import read_study

@@ -37,15 +37,10 @@ def test_the_good_scene_is_good(tmp_path, capsys):
     [
         # numbers
         ("E =", "E = -1", "material.E = -1: must be > 0"),
-        ("E =", "E = 0.0", "material.E = 0.0: must be > 0"),
         ("E =", "E = nan", "material.E = nan: must be finite"),
-        ("E =", "E = inf", "material.E = inf: must be finite"),
-        ("E =", "E = -inf", "material.E = -inf: must be finite"),
         ("E =", "E = 1e400", "material.E = inf: must be finite"),
         ("E =", 'E = "72e9"', "material.E = '72e9': must be a number, not a string"),
         ("E =", "E = true", "material.E = true: must be a number, not true or false"),
-        ("E =", "E = [1.0]", "material.E = [1.0]: must be a number, not an array"),
-        ("E =", "E = {x = 1}", "material.E = {'x': 1}: must be a number, not a table"),
         ("E =", "E = 1979-05-27", "material.E = 1979-05-27: must be a number, not "),
         ("E =", "E = " + "9" * 400, f"material.E = {'9' * 57}...: {SIZE}"),
         ("E =", "E = " + "9" * 5000, "not valid TOML: "),
@@ -54,69 +49,43 @@ def test_the_good_scene_is_good(tmp_path, capsys):
         ("nu =", "nu = -1", "material.nu = -1: must be >= -0."),
         ("nu =", "nu = 2", "material.nu = 2: must be < 0.5"),
         ("f =", "f = -0.1", "friction.f = -0.1: must be >= 0"),
-        ("f =", "f = nan", "friction.f = nan: must be finite"),
         ("f =", "f = 1001", "friction.f = 1001: must be <= 1000"),
-        ("f =", "f = 1e300", "friction.f = 1e+300: must be "),
         ("R =", "R = 0", "profile.R = 0: must be > 0"),
-        ("R =", "R = -0.05", "profile.R = -0.05: must be > 0"),
         ("E =", "E = 1e-320", f"material.E = 1e-320: {SIZE}"),
-        ("R =", "R = 1e300", f"profile.R = 1e+300: {SIZE}"),
         ("E =", "E = 1e-99", "load.p0 = 400000000.0: must give P and sqrt(A R P) from 1e-100 to 1e+100"),
-        ("R =", "R = 1e99", "load.p0 = 400000000.0: must give P and sqrt(A R P) from 1e-100 to 1e+100"),
         # words
         ("plane =", 'plane = "plain"', "material.plane = 'plain': must be one of 'strain', 'stress'"),
         ("plane =", "plane = 1", "material.plane = 1: must be 'strain' or 'stress', not a whole number"),
         ("kind =", 'kind = "wedge"', "profile.kind = 'wedge': must be one of 'hertz'"),
-        ("kind =", "kind = []", "profile.kind = []: must be a string"),
-        ("title =", "title = 3", "title = 3: must be a string"),
         ("name =", "name = 3", "name = 3: must be a string"),
         ("name =", 'name = ""', "name = '': must be letters"),
         ("name =", 'name = "a/b"', "name = 'a/b': must be letters"),
-        ("name =", 'name = ".."', "name = '..': must be letters"),
         ("name =", r'name = "bench\n"', r"name = 'bench\n': must be letters"),
         ("name =", f'name = "{"x" * 101}"', f"name = '{'x' * 56}...: must be at most 100 characters"),
         # the load
-        ("p0 =", "P = 0", "load.P = 0: must be > 0"),
-        ("p0 =", "P = nan", "load.P = nan: must be finite"),
-        ("p0 =", "a = -1e-3", "load.a = -0.001: must be > 0"),
         ("p0 =", "", "load: exactly one of P, a, p0 must be given, not none"),
         ("p0 =", "P = 1e5\na = 1e-3", "load: exactly one of P, a, p0 must be given, not P and a"),
-        ("p0 =", "P = 1e5\na = 1e-3\np0 = 4e8", "load: exactly one of P, a, p0 must be given, not P and a and p0"),
-        ("p0 =", "P = 1e-320", f"load.P = 1e-320: {SIZE}"),
-        ("p0 =", "P = 1e308", f"load.P = 1e+308: {SIZE}"),
-        ("p0 =", "p0 = 1e300", f"load.p0 = 1e+300: {SIZE}"),
         ("p0 =", "a = 1e99", "load.a = 1e+99: must give P and sqrt(A R P) from 1e-100 to 1e+100"),
-        ("p0 =", "p0 = 1e99", "load.p0 = 1e+99: must give P and sqrt(A R P) from 1e-100 to 1e+100"),
         ("Q =", "Q = 1e5", "load.Q = 100000.0: must be an array, not a number"),
         ("Q =", "Q = [1.0]", "load.Q = [1.0]: must be an array of at least 2 numbers"),
         ("Q =", "Q = [1, 2, 3]", "load.sigma: must have as many numbers as load.Q, 3, not 2"),
         ("Q =", 'Q = ["1", 2]', "load.Q[0] = '1': must be a number, not a string"),
-        ("Q =", "Q = [1, inf]", "load.Q[1] = inf: must be finite"),
         ("Q =", "Q = [-1e308, 1e308]", f"load.Q[0] = -1e+308: {SIZE}"),
         ("sigma =", "sigma = [0, [1]]", "load.sigma[1] = [1]: must be a number, not an array"),
-        ("sigma =", "sigma = [0, 1e-308]", f"load.sigma[1] = 1e-308: {SIZE}"),
         ("cycles =", "cycles = 0", "load.cycles = 0: must be >= 1"),
         ("cycles =", "cycles = 1.5", "load.cycles = 1.5: must be a whole number"),
         ("cycles =", "cycles = 1000000000", "load.cycles = 1000000000: must be <= 1000"),
         # finite elements
         ("accuracy =", "accuracy = 0", "fem.accuracy = 0: must be >= 1e-09"),
-        ("accuracy =", "accuracy = 1", "fem.accuracy = 1: must be <= 0.1"),
-        ("order =", "order = 0", "fem.order = 0: must be one of 1, 2, 3, 4, 6"),
         ("order =", "order = 5", "fem.order = 5: must be one of 1, 2, 3, 4, 6"),
-        ("order =", 'order = "4"', "fem.order = '4': must be a whole number, not a string"),
         ("far_field =", 'far_field = "bx"', "fem.far_field = 'bx': must be one of 'half-plane', 'box'"),
         ("width =", "width = 1", "fem.width = 1: must be >= 4"),
         # keys and tables
         ("name =", "", "name: missing"),
         ("R =", "", "profile.R: missing"),
         ("name =", 'nmae = "bench"', "nmae: unknown key; did you mean 'name'?"),
-        ("E =", "e = 72e9", "material.e: unknown key; did you mean 'E'?"),
-        ("R =", "radius = 1", "profile.radius: unknown key; known are kind, R"),
         ("f =", "mu = 0.5", "friction.mu: unknown key; known are f"),
-        ("sigma =", "sigm = [0, 1]", "load.sigm: unknown key; did you mean 'sigma'?"),
-        ("far_field =", 'farfield = "box"', "fem.farfield: unknown key; did you mean 'far_field'?"),
         ("[material]", "[materiel]", "materiel: unknown key; did you mean 'material'?"),
-        ("[fem]", "[FEM]", "FEM: unknown key; did you mean 'fem'?"),
         ("[fem]", "[mesh]", "mesh: unknown key; known are name, material, "),
         ("[load]", "[[load]]", "load = [{'p0': 400000000.0, "),
         ("[friction]", "[friction.f]", "friction.f = {'f': 0.5}: must be a number or an array, not a table"),
@@ -180,70 +149,6 @@ def test_no_such_scene(rejected, tmp_path, path, expected):
     assert not [part for part in expected if part not in message]
 
 
-@pytest.mark.parametrize(
-    ("setting", "expected"),
-    [
-        ("", "--set : must be table.key=value"),
-        ("=", "--set =: must be table.key=value"),
-        ("load.P", "--set load.P: must be table.key=value"),
-        ("load..P=3", "--set load..P=3: must be table.key=value"),
-        ("name.x=1", "--set name.x=1: name must be a table"),
-        ("load.Q.0=1", "--set load.Q.0=1: Q must be a table"),
-        ("load=1", "load = 1: must be a table"),
-        ("load.p0=", "--set load.p0=: not valid TOML: "),
-        ("load.p0=x y", "load.p0 = 'x y': must be a number"),
-        ("load.p0=1=2", "--set load.p0=1=2: not valid TOML: "),
-        ("load.p0=nan", "load.p0 = nan: must be finite"),
-        ("load.Q=[1", "--set load.Q=[1: not valid TOML: "),
-        ("load.P=1e5", "load: exactly one of P, a, p0 must be given, not P and p0"),
-        ("lod.P=1", "lod: unknown key; did you mean 'load'?"),
-        ("fem.far_field=bx", "fem.far_field = 'bx': must be one of"),
-        ("load.p0=" + "9" * 5000, "999...: not valid TOML: "),
-        ("load.p0=" + "[" * 3000, "[[[...: not valid TOML: "),
-        ("x\ny=1", r"x\ny: unknown key"),
-    ],
-)
-def test_bad_setting(rejected, setting, expected):
-    assert expected in rejected(None, [*SHIPPED, "--set", setting])
-
-
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        ([], "COMMAND"),
-        (["bogus"], "'bogus'"),
-        (["run"], "SCENE"),
-        (["scenes", "extra"], "extra"),
-        ([*SHIPPED, "--bogus"], "--bogus"),
-        ([*SHIPPED, "extra"], "extra"),
-        (["run", "hertz-shear", "--with", "exat"], "--with 'exat': must be of exact, march, fem, equivalent; did you"),
-        (
-            ["fatigue", "hertz-shear", "--with", "exat"],
-            "'exat' (choose from 'exact', 'march', 'fem'); did you mean 'exact'?",
-        ),
-        (["rnu", "hertz-shear"], "did you mean 'run'?"),
-        (["run", "hertz-shear", "--with", "exact,bem"], "--with 'bem': must be of exact, march, fem"),
-        (["run", "hertz-shear", "--with", ""], "--with '': must be of exact, march, fem"),
-        (["run", "hertz-shear", "--with", "exact,"], "--with '': must be of exact, march, fem"),
-        ([*SHIPPED, "--accuracy", "fine"], "--accuracy 'fine': must be a number"),
-        ([*SHIPPED, "--accuracy", "0"], "fem.accuracy = 0.0: must be >= 1e-09"),
-        ([*SHIPPED, "--accuracy", "nan"], "fem.accuracy = nan: must be finite"),
-        ([*SHIPPED, "--accuracy", ""], "--accuracy '': must be a number"),
-        ([*SHIPPED, "--out", "bench.toml"], "--out bench.toml: cannot be written"),
-        ([*SHIPPED, "--out", "bench.toml/inside"], "--out bench.toml/inside: cannot be written"),
-        ([*SHIPPED, "--out", "nul\0"], r"--out nul\x00: cannot be written"),
-        ([*SHIPPED, "--out", ""], "must name a folder"),
-        ([*SHIPPED, "--out", "/proc/x/y"], "--out /proc/x/y: cannot be written: No such file"),
-        ([*SHIPPED, "--acc", "1e-3"], "--acc: did you mean --accuracy? (see partialslip run --help)"),
-        (["study", "cost", "hertz-shear", "--repeat=3"], "--repeats? (see partialslip study cost --help)"),
-        ([*SHIPPED, "--bo\ngus"], r"unknown argument --bo\ngus (see partialslip run --help)"),
-        (["score", "hertz-shear", "t.csv", "--bar", "-1e-3"], "--bar -1e-3: must be one number, or three"),
-    ],
-)
-def test_bad_arguments(rejected, arguments, expected):
-    assert expected in rejected(GOOD, arguments)
-
-
 def test_what_the_run_refuses_names_the_scene(rejected):
     two = "material={upper={E=72e9, nu=0.3}, lower={E=210e9, nu=0.3}}"
     for scene in ("bench.toml", "hertz-shear"):
@@ -285,11 +190,6 @@ def test_a_flat_that_is_hardly_pressed(rejected, method):
     if method != "fem":  # the corners carry all of P, on 1e-10 of the contact, where rounding is a part of p
         text = text.replace("1e20", "5e4").replace("p0 =", "P =")
         assert "by more than 1e-07 of the flat's" in rejected(text, ["run", "bench.toml", "--with", method])
-
-
-def test_a_tower(rejected):
-    text = f"{GOOD}[bodies.lower]\nwidth = 0.02\nheight = 100.0\n"
-    assert "bodies.lower.height = 100.0: must be <= 1000 times" in rejected(text, ["run", "bench.toml"])
 
 
 def test_more_than_the_memory_holds(rejected, monkeypatch):

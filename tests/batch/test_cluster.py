@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 
 import pytest
 
@@ -16,25 +17,36 @@ from partialslip.study.batch.ledger import Ledger
 from partialslip.study.batch.sweep import work_through, workers
 
 
-@pytest.mark.slow
-def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
-    pytest.importorskip("distributed")
-    file, folder = tmp_path / "scheduler.json", ["--local-directory", str(tmp_path)]
+@contextmanager
+def cluster(folder, name, environment=None):
+    """Address of a scheduler, its process, and those of its two workers."""
+    file, quiet = folder / f"{name}.json", {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
-    def start(what, *options):
+    def start(what, *options, env=None):
         command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--scheduler-file", str(file), *options]
-        return subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL)
+        return subprocess.Popen(command, cwd=folder, env=env, **quiet)
 
-    cases = [Job(partialslip.load_scene("hertz-shear"), ("exact",), {"number": number}) for number in range(40)]
-    ledger, done = Ledger(tmp_path / "ledger.jsonl"), []
     scheduler = start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
-    crew = [start("worker", "--no-nanny", "--nthreads", "1", "--no-dashboard", *folder) for _ in range(2)]
+    settings = "--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)
+    crew = [start("worker", *settings, env=environment) for _ in range(2)]
     try:
-        for _ in range(600):
+        for _ in range(2400):
             if file.exists() and file.read_text():
                 break
             time.sleep(0.05)
-        address = json.loads(file.read_text())["address"]
+        yield json.loads(file.read_text())["address"], scheduler, crew
+    finally:
+        for process in (*crew, scheduler):
+            process.kill()
+            process.wait()
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
+    pytest.importorskip("distributed")
+    cases = [Job(partialslip.load_scene("hertz-shear"), ("exact",), {"number": number}) for number in range(40)]
+    ledger, done = Ledger(tmp_path / "ledger.jsonl"), []
+    with cluster(tmp_path, "one") as (address, _, crew):
 
         def kill(count, *_):
             done.append(count)
@@ -43,10 +55,6 @@ def test_a_dask_cluster_goes_on_where_a_worker_is_killed(tmp_path):
 
         with workers(address) as executor:
             work_through([case.task for case in cases], ledger, executor, kill)
-    finally:
-        for process in (*crew, scheduler):
-            process.kill()
-            process.wait()
     assert done == list(range(41))
     assert {entry["labels"]["number"] for entry in ledger} == set(range(40))
     assert len(ledger.path.read_text().splitlines()) == 40  # nothing twice
@@ -103,33 +111,13 @@ def test_what_a_cluster_lacks_is_one_line(tmp_path, fault):
     count = 60
 
     def attempt(fault):
-        file = tmp_path / f"scheduler-{fault}.json"
-        command = [sys.executable, "-m"]
-        quiet = {"cwd": tmp_path, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        of_scheduler = ["--scheduler-file", str(file), "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
-        scheduler = subprocess.Popen([*command, "distributed.cli.dask_scheduler", *of_scheduler], **quiet)
-        of_worker = ["--scheduler-file", str(file), "--no-nanny", "--nthreads", "1", "--no-dashboard"]
-        environment = bare if fault == "no package" else None
-        crew = [
-            subprocess.Popen([*command, "distributed.cli.dask_worker", *of_worker], env=environment, **quiet)
-            for _ in range(2)
-        ]
-        try:
-            for _ in range(2400):
-                if file.exists() and file.read_text():
-                    break
-                time.sleep(0.05)
-            address, ledger = json.loads(file.read_text())["address"], str(tmp_path / "ledger.jsonl")
-            work = [sys.executable, "-c", SWEEP, address, ledger, str(count)]
+        with cluster(tmp_path, fault, bare if fault == "no package" else None) as (address, scheduler, _):
+            work = [sys.executable, "-c", SWEEP, address, str(tmp_path / "ledger.jsonl"), str(count)]
             study = subprocess.Popen(work, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             if fault == "scheduler killed":
                 next(line for line in study.stdout if line == "5\n")
                 scheduler.kill()
             _, said = study.communicate(timeout=300)
-        finally:
-            for process in (*crew, scheduler):
-                process.kill()
-                process.wait()
         return study.returncode, said
 
     code, said = attempt(fault)

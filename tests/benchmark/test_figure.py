@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from partialslip.verify.benchmark import Answer, Meta, Submission, read_problems
-from partialslip.verify.benchmark.figure import _APART, _columns, errors_along, problem_svg
+from partialslip.verify.benchmark.book import _APART, _columns, errors_along, problem_svg
 
 PROBLEM = read_problems()["PS-02"]
 EXACT = {key: target.value for key, target in PROBLEM.targets.items()}

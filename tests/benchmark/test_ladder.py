@@ -1,14 +1,12 @@
 """Ladders of meshes: order, extrapolation and index of values whose error is known; badges."""
 
 import itertools
-import json
 import re
 import xml.etree.ElementTree as ET
 
 import msgspec
 import pytest
 
-from partialslip.tools.errors import InputError
 from partialslip.verify.benchmark import (
     Answer,
     Meta,
@@ -78,26 +76,6 @@ def test_ladders_of_extreme_numbers_end():
 
 def test_the_last_three_of_more_meshes_count():
     assert climb("m", ladder(sizes=(0.5, 0.04, 0.02, 0.01), m=lambda h: h**2)).order == pytest.approx(2)
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({"ladder": [{"h": 1, "values": {}}, {"h": 0.5, "values": {}}]}, "ladder: must have 3 meshes or more, not 2"),
-        ({"ladder": [{"h": h, "values": {}} for h in (1, 2, 3)]}, r"ladder\[1\].h = 2.0: must be less than 1.0"),
-        ({"ladder": [{"h": h, "values": {"a": 1.0}} for h in (3, 2, 1)]}, "values: must be those of the last mesh"),
-        ({"ladder": [{"h": -1, "values": {}}] * 3}, "must be > 0"),
-        (
-            {"ladder": [{"h": 3, "values": {"b": 1}}, {"h": 2, "values": {}}, {"h": 1, "values": {}}]},
-            r"ladder\[0\].values.b: no target has this key",
-        ),
-    ],
-)
-def test_a_ladder_that_is_none_is_said_to_be(change, said, tmp_path):
-    (tmp_path / "meta.toml").write_text('code = "mine"\nversion = "1"\n', "utf-8")
-    (tmp_path / "PS-02.json").write_text(json.dumps({"values": {}} | change), "utf-8")
-    with pytest.raises(InputError, match=said):
-        read_submission(tmp_path, {"PS-02": PROBLEM})
 
 
 @pytest.mark.slow

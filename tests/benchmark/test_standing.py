@@ -178,11 +178,8 @@ def test_names_of_badges_are_all_different_and_plain():
     ("one", "other"),
     [
         ("partialslip exact", "p\u0430rtialslip exact"),  # a Cyrillic a
-        ("Abaqus", "\u0391baqus"),  # a Greek Alpha
         ("GetFEM", "Get\u200bFEM"),  # a space of no width
-        ("my code", "my\u00a0code"),  # a space that does not break
         ("\u00e9", "e\u0301"),  # one letter, or a letter and an accent
-        ("code", "\uff43ode"),  # a wide c
     ],
 )
 def test_codes_that_look_alike_are_refused(one, other, tmp_path, capsys):
@@ -218,11 +215,3 @@ def test_texts_of_more_than_a_line_are_refused(text, tmp_path):
         write(tmp_path / "other", {"PS-01": {}}, f"x{text}")
         with pytest.raises(InputError, match=r"meta.toml: (code = .*control characters|not valid TOML)"):
             read_submission(tmp_path / "other", KNOWN)
-
-
-def test_every_badge_fits_its_text_and_is_well_formed():
-    for folder in sorted(SUBMISSIONS.iterdir()):
-        drawn = ET.fromstring(badge(read_submission(folder, KNOWN)))
-        cells = [each for each in drawn.iter() if each.tag.endswith("rect")]
-        assert len(cells) == 2 + len(GROUPS)
-        assert float(drawn.get("width")) == pytest.approx(sum(float(each.get("width")) for each in cells))

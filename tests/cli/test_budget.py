@@ -11,11 +11,6 @@ from partialslip.cli import main
 from partialslip.cli import run as command
 
 
-@pytest.mark.parametrize("extra", [("--with", "exact"), ("--set", "fem.size=0.1")])
-def test_a_budget_needs_elements_that_follow_an_accuracy(refused, extra):
-    assert refused("run", "hertz-shear", "--budget", "50s", *extra).startswith("partialslip: --budget: needs")
-
-
 def test_what_the_choice_of_methods_takes_is_part_of_a_budget(monkeypatch, refused):
     """The exact way is followed for it, which may take more than all else."""
     clock, allowed = [0.0], []
@@ -52,12 +47,3 @@ def test_a_budget_of_nothing_still_gives_an_estimate(tmp_path, capsys):
     assert "known to" in capsys.readouterr().out
     fem = json.loads((tmp_path / "results.json").read_text("utf-8"))["methods"]["fem"]
     assert {"a", "m", "n", "p", "q"} <= {*fem["estimate"]}
-
-
-@pytest.mark.parametrize(
-    "options",
-    [("--budget", "0"), ("--budget", "-1s"), ("--budget", "soon"), ("--budget", "nan"),
-     ("--accuracy", "x"), ("--accuracy", "1"), ("--accuracy", "1e-3", "--budget", "5s")],
-)  # fmt: skip
-def test_bad_amounts_are_one_line(refused, options):
-    refused("run", "hertz-shear", *options)

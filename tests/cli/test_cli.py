@@ -7,8 +7,6 @@ import json
 import os
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 from unittest import mock
@@ -21,14 +19,12 @@ from outline import Outline
 import partialslip
 from partialslip.cli import main
 from partialslip.report import files
-from partialslip.scene.reading import load_scene, parse_scene, shipped_scenes
-from partialslip.study.map import grid
+from partialslip.scene.reading import load_scene, shipped_scenes
 from partialslip.tools.output import place
 
 EXACT = ("run", "hertz-shear", "--with", "exact")
 WITHIN = "within 1 % of a, 10 % of p and q"
 FILES = ["report.html", "results.json", "tractions.csv"]
-HEAVY = ("gmsh", "skfem", "meshio", "matplotlib")
 
 
 def call(folder, *arguments):
@@ -70,12 +66,6 @@ def missed(tmp_path_factory):
     return call(tmp_path_factory.mktemp("missed"), "run", "hertz-shear", *settings)
 
 
-def test_exact_run_writes_three_files(exact):
-    assert (exact.code, names(exact.folder)) == (0, FILES)
-    assert re.fullmatch("hertz-shear-[0-9a-f]{8}", exact.folder.name)
-    assert exact.out.splitlines()[-1].endswith(f"; files in {Path('results', exact.folder.name)} (settings: methods)")
-
-
 def test_a_run_is_short_and_verbose_on_demand(both, tmp_path):
     """What is found, one line a method, the verdict and the folder; the rest with --verbose."""
     title, answered, *_, exact, fem, last = both.out.splitlines()
@@ -92,37 +82,6 @@ def test_a_run_is_short_and_verbose_on_demand(both, tmp_path):
         assert word not in both.out
 
 
-def test_an_exact_run_says_what_it_found(exact):
-    _, answered, *answer, method, last = exact.out.splitlines()
-    assert answered == "exact: small tension"
-    assert [re.sub(" {2,}", ": ", line.strip()) for line in answer] == [
-        "stick zone: [-0.6324555, 0.6324555] mm",
-        "m, n: 0.6324555 a, 0.6324555 a",
-        "a: 1 mm",
-        "p0: 400 MPa",
-        "p_max: 400 MPa",
-        "largest |q1|: 154.9193 MPa",
-        "largest |q2|: 154.9193 MPa",
-        "largest sigma_xx, 1: 309.8387 MPa at x = -1 mm",
-        "largest sigma_xx, 2: 309.8387 MPa at x = 1 mm",
-    ]
-    assert method.startswith("exact  small tension, 0.0")
-    assert last.startswith("no bars: nothing to compare with; files in ")
-
-
-def test_record_of_an_exact_run(exact):
-    assert (exact.record["schema"], exact.record["comparison"]) == ("partialslip/result/3", {})
-    assert exact.record["versions"]["partialslip"] == partialslip.__version__
-    decided = exact.record["plan"]
-    assert decided["reasons"].keys() == {*decided["called_for"], *decided["left_out"]}
-    method = exact.record["methods"]["exact"]
-    assert {"a", "p0", "regime", "m", "n", "stick_half_width", "stick_centre"} < method.keys()
-    assert method["traction"].keys() == {"x", "p", "q1", "q2", "dq"}
-    assert len({len(column) for column in method["traction"].values()}) == 1
-    assert {"cpu_s", "wall_s", "peak_rss_mb"} <= method["cost"].keys()
-    assert (method["a"], method["m"]) == pytest.approx((1e-3, 0.4**0.5 * 1e-3), rel=1e-12)
-
-
 def test_tractions_table(both):
     table = rows(both.folder)
     assert list(table[0]) == ["method", "x", "x_over_a", "p", "q1", "q2", "dq"]
@@ -135,19 +94,6 @@ def test_tractions_table(both):
         np.testing.assert_allclose(scaled * method["a"], method["traction"]["x"], rtol=1e-14, atol=1e-20)
 
 
-def test_run_with_finite_elements(both):
-    assert both.code == 0
-    assert both.record["methods"].keys() == {"exact", "fem"}
-    assert parse_scene(both.record["scene"]) == load_scene("hertz-shear", ["fem.accuracy=1e-2"])
-    comparison = both.record["comparison"]["fem"]
-    assert (comparison["outcome"], comparison["missed"]) == ("passed", [])
-    assert (both.record["outcome"], both.record["reference"]) == ("passed", "exact")
-    for key in ("a", "m", "n", "p", "q"):
-        assert 0 <= comparison["errors"][key] <= comparison["bars"][key]
-    assert comparison["bars"]["a"] == 1e-2
-    assert "all bars met" in both.out
-
-
 def test_fields_read_back(both):
     assert names(both.folder) == sorted([*FILES, "bodies.vtu", "mesh.msh", "surface.csv"])
     with contextlib.redirect_stdout(io.StringIO()):
@@ -158,14 +104,6 @@ def test_fields_read_back(both):
     assert {values.shape for values in bodies.point_data.values()} == {bodies.points.shape}
     for displacements in bodies.point_data.values():
         assert 0 < np.abs(displacements).max() < np.inf
-
-
-def test_json_alone_writes_nothing(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main([*EXACT, "--json"]) == 0
-    printed = capsys.readouterr()
-    assert strict(printed.out)["schema"] == "partialslip/result/3"
-    assert (printed.err, names(tmp_path)) == ("", [])
 
 
 def test_json_with_a_folder_prints_what_it_writes(tmp_path, capsys):
@@ -208,17 +146,6 @@ def test_page_stands_alone(request, kind):
     assert [link for link in page.links if not link.startswith("#")] == []
 
 
-def test_page_names_no_address(both):
-    text = re.sub(r'\sxmlns(:\w+)?="[^"]*"', "", (both.folder / "report.html").read_text("utf-8"))
-    assert re.findall(r"https?://[^\"'<> ]*|@import|url\((?!#)", text) == []
-
-
-def test_page_tells_of_both_methods(both):
-    text = " ".join(page_of(both).text)
-    words = ("hertz-shear", load_scene("hertz-shear").title, "exact", "fem", "all bars met", "far-field")
-    assert [word for word in words if word not in text] == []
-
-
 def test_page_takes_a_title_as_text(tmp_path):
     title = "<script>x</script> & [bold] R&D"
     page = page_of(call(tmp_path, *EXACT, "--set", f"title={json.dumps(title)}"))
@@ -252,11 +179,6 @@ def test_errors_are_legible_in_80_columns(missed):
             assert abs(each["found"] - each["reference"]) == pytest.approx(each["error"], abs=1e-12)
 
 
-def test_errors_of_a_soft_body_are_legible_in_80_columns(tmp_path):
-    soft = ("material.E=1e4", "load.p0=12.3456", "load.Q=[0, 0]", "fem.accuracy=1e-2")
-    assert "…" not in call(tmp_path, "run", "hertz-shear", *(f"--set={setting}" for setting in soft)).out
-
-
 @pytest.mark.parametrize("arguments", [("--set", 'title="[bold]x"'), ("--set", "title=x[/x]"), ("--out", "out[red]")])
 def test_brackets_are_printed_as_they_are(tmp_path, monkeypatch, capsys, arguments):
     monkeypatch.chdir(tmp_path)
@@ -270,23 +192,8 @@ def test_scenes_are_listed(capsys):
     assert [line.split(maxsplit=1) for line in lines] == [[name, title] for name, title in shipped_scenes().items()]
 
 
-@pytest.mark.parametrize("command", ["--version", "--help", "run --help", "page --help", "scenes --help"])
-def test_version_and_help(capsys, command):
-    assert main(command.split()) == 0
-    expected = f"partialslip {partialslip.__version__}\n", f"usage: partialslip {command.removesuffix('--help')}"
-    assert capsys.readouterr().out.startswith(expected[command != "--version"])
-
-
 def stop(*_, **__):
     raise KeyboardInterrupt
-
-
-def test_stopped_before_the_page_is_written(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(files, "run_page", stop)
-    assert main([*EXACT, "--out", str(tmp_path)]) == 130
-    assert capsys.readouterr().err == "partialslip: interrupted\n"
-    assert names(tmp_path) in ([], ["results.json", "tractions.csv"])
-    assert [strict(path)["schema"] for path in tmp_path.glob("*.json")] in ([], ["partialslip/result/3"])
 
 
 @pytest.mark.parametrize("what", ["run_page", "tractions_csv", "record"])
@@ -298,46 +205,6 @@ def test_stopped_over_older_files(exact, tmp_path, monkeypatch, what):
     assert names(tmp_path) == FILES
     assert strict(tmp_path / "results.json")["scene"]["load"]["p0"] in (3e8, 4e8)
     assert (tmp_path / "report.html").read_bytes() == page
-
-
-@pytest.mark.parametrize(
-    ("one", "other"), [(EXACT, (*EXACT, "--set", "load.p0=3e8")), (("map",), ("map", "hertz-shear"))]
-)
-def test_stopped_in_the_middle_of_a_file(tmp_path, monkeypatch, one, other):
-    monkeypatch.setattr(grid, "_COUNT", 4)
-    monkeypatch.setattr(grid, "_RATIOS", np.linspace(0, 8, 5))
-    assert main([*one, "--out", str(tmp_path)]) == 0
-    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-
-    def half(path, text, *_, **__):
-        path.write_bytes(text.encode()[: len(text) // 2])
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Path, "write_text", half)
-    assert main([*other, "--out", str(tmp_path), "--force"]) == 130
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
-
-
-@pytest.mark.parametrize(
-    ("code", "libraries"),
-    [
-        ("import partialslip", (*HEAVY, "jinja2", "rich")),
-        (f"from partialslip.cli import main\nmain({[*EXACT, '--json']})", HEAVY),
-    ],
-)
-def test_what_is_not_needed_is_not_imported(code, libraries):
-    code += f"\nimport sys\nprint(*(name for name in {libraries} if name in sys.modules), file=sys.stderr)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stderr.split() == []
-
-
-def test_a_reader_that_has_gone_brings_no_traceback():
-    reader, writer = os.pipe()
-    os.close(reader)
-    code = "import sys\nfrom partialslip.cli import main\nsys.exit(main(['scenes']))"
-    done = subprocess.run([sys.executable, "-c", code], stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
-    os.close(writer)
-    assert "Error" not in done.stderr
 
 
 def test_a_contact_that_ratchets_ends_with_4_and_prints_no_stick_zone(capsys):

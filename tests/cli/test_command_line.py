@@ -3,11 +3,9 @@
 import argparse
 import contextlib
 import io
-import os
 import re
 import shutil
 import subprocess
-import sys
 
 import pytest
 
@@ -105,10 +103,6 @@ def test_json_has_no_colours():
     assert ESCAPE not in printed([*EXACT, "--json"], FORCE_COLOR="1")
 
 
-def test_a_shell_without_completion_is_refused(refused):
-    assert "'bash'" in refused("completion", "fish")
-
-
 def completed(script, line):
     """Return bash's completions of the last word of ``line``."""
     words = line.split(" ")
@@ -139,15 +133,3 @@ def test_bash_completes_commands_options_scenes_and_files(tmp_path):
 @pytest.mark.skipif(not shutil.which("zsh"), reason="zsh is not installed")
 def test_zsh_reads_its_completion():
     subprocess.run(["zsh", "-n"], input=printed(["completion", "zsh"]), text=True, check=True)
-
-
-def test_zsh_has_all_scenes():
-    text = printed(["completion", "zsh"])
-    assert text.startswith("#compdef partialslip")
-    assert all(name in text for name in shipped_scenes())
-
-
-def test_help_needs_nothing_heavy():
-    code = "import sys; from partialslip.cli import parser; parser().format_help(); print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env={**os.environ})
-    assert not {"numpy", "scipy", "msgspec", "rich", "shtab", "matplotlib", "gmsh", "skfem"} & set(done.stdout.split())

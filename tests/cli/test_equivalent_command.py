@@ -87,20 +87,6 @@ def test_a_scene_that_refers_to_the_rig_runs_by_exact_and_equivalent(call):
     assert set(json.loads(out)["methods"]) == {"exact", "equivalent"}
 
 
-@pytest.mark.usefixtures("done")
-def test_once_more_the_files_are_the_same(call, folder):
-    before = (folder / "results/blocks-equivalent/rig.json").read_bytes()
-    code, out, _ = call("equivalent", "blocks.toml", "--force")
-    assert (code, (folder / "results/blocks-equivalent/rig.json").read_bytes()) == (0, before)
-    assert "written: rig.json" in out
-
-
-def test_settings_change_the_scene(call):
-    code, out, _ = call("equivalent", "blocks.toml", "--set", "load.Q=[0, 1e5]", "--out", "other")
-    assert code == 0
-    assert "written: rig.json, half-planes.toml in other" in out
-
-
 def test_units_are_those_of_the_scene(call, folder):
     metres = ("72.8e9", "50e-3", "4e8", "2.3e5", "2.4e8", "16e-3", "8e-3")
     text = TEXT
@@ -113,26 +99,3 @@ def test_units_are_those_of_the_scene(call, folder):
     code, out, err = call("equivalent", "mm.toml", "--set", "load.displacement=[0,3e-3]", "--set", "load.Q=[0,0]")
     assert (code, out) == (2, "")
     assert err.startswith("partialslip: mm.toml: load.displacement = [0, 0.003] mm: must be load.Q here")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("equivalent", "hertz-shear"), "bodies: must have upper or lower"),
-        (("equivalent", "absent.toml"), "absent.toml: cannot be read"),
-        (("equivalent", "blocks.toml", "--set", "load.p0=2e9"), "bodies: must be larger compared with"),
-        (("equivalent", "blocks.toml", "--set", "material.E=-1"), "material.E = -1"),
-        (("equivalent", "blocks.toml", "--out", "blocks.toml"), "--out blocks.toml: cannot be written"),
-        (("verify", "--suite", "stress", "--method", "equivalent"), "must be one of exact, march, fem"),
-        (("score", "blocks.toml", "blocks.toml", "--with", "equivalent"), "choose from 'exact', 'march', 'fem'"),
-    ],
-)
-def test_errors_are_one_line(folder, monkeypatch, refused, arguments, said):
-    monkeypatch.chdir(folder)
-    assert said in refused(*arguments)
-
-
-@pytest.mark.usefixtures("done")
-def test_a_rig_of_other_bodies_is_one_line(refused):
-    said = refused("run", "referring.toml", "--set", "bodies.upper.height=9e-3", "--with", "equivalent")
-    assert "rig.json: this rig has other bodies, supports or materials than blocks" in said

@@ -3,8 +3,6 @@
 import csv
 import importlib
 import json
-import os
-import re
 
 import pytest
 
@@ -53,21 +51,6 @@ def test_criteria_in_capitals_and_the_former_name_of_an_option(here):
     for how in (["--with", "exact"], ["--method", "exact"]):
         assert main(["fatigue", "fretting-aluminium", "--criterion", "SWT", *how]) == 0
     assert len(list((here / "results").iterdir())) == 1
-
-
-@pytest.mark.slow
-def test_the_same_request_writes_to_the_same_folder(here, capsys):
-    """Constants of the criteria are settings here; those of the scene have the usual folder, however they are given."""
-    run = ["fatigue", "fretting-aluminium"]
-    every = [*run, "--criterion", "principal,swt,ruiz"]
-    for arguments in ([*run, "--distance", "50e-6"], [*run, "--set", "fatigue.distance=50e-6"], run, every):
-        assert main(arguments) == 0
-    assert len(list((here / "results").iterdir())) == 2
-    found = [line.rpartition(" in ")[2] for line in capsys.readouterr().out.splitlines() if line.startswith("written")]
-    usual = os.path.join("results", "fretting-aluminium-fatigue")
-    assert found[0] == found[1]
-    assert re.fullmatch(re.escape(usual) + r"-[0-9a-f]{8} \(settings: fatigue.distance\)", found[0])
-    assert found[2:] == [usual, usual]
 
 
 @pytest.mark.parametrize(

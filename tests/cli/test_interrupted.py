@@ -5,7 +5,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
@@ -141,15 +140,7 @@ def stop_and_rerun(stopped, folder, at, kind):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
-@pytest.mark.parametrize("at", [2, 7])
-def test_stopped_at_a_write(stopped, tmp_path, at, kind):
-    stop_and_rerun(stopped, tmp_path, at, kind)
-
-
-@pytest.mark.parametrize(
-    ("at", "cases", "kind"), [(25, 1, signal.SIGKILL), pytest.param(35, 2, signal.SIGINT, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("at", "cases", "kind"), [(25, 1, signal.SIGKILL), (35, 2, signal.SIGINT)])
 def test_a_verification_stopped_at_a_write_goes_on(stopped, tmp_path, at, cases, kind):
     """Before the second case is in the ledger, and while the PDF is written."""
     assert stopped(tmp_path, at, kind, VERIFY)[0] == (-signal.SIGKILL if kind == signal.SIGKILL else 130)
@@ -175,29 +166,6 @@ def test_stopped_at_every_write(stopped, tmp_path, kind, earlier):
         folder = tmp_path if earlier else tmp_path / str(at)
         folder.mkdir(exist_ok=True)
         stop_and_rerun(stopped, folder, at, kind)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
-@pytest.mark.parametrize("arguments", [("run", "hertz-shear", "--fields", "--out", "out"), ("map", "--out", "out")])
-def test_stopped_at_any_time(tmp_path, kind, arguments):
-    """At times spread over the whole run, start-up and finite elements included; march is stopped at every write."""
-    command = [sys.executable, "-m", "partialslip", *arguments]
-    begin = time.monotonic()
-    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
-    spent = time.monotonic() - begin
-    for share in np.linspace(0.3, 1.05, 6):
-        process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        try:
-            process.communicate(timeout=share * spent)
-        except subprocess.TimeoutExpired:
-            process.send_signal(kind)
-            _, said = process.communicate()
-            if kind == signal.SIGINT and process.returncode == 130:
-                assert "partialslip: interrupted" in said.splitlines()
-                assert "Traceback" not in said
-        whole(tmp_path / "out")
-    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
 
 
 def test_half_a_file_never_takes_a_name(tmp_path):

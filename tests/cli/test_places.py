@@ -83,11 +83,6 @@ def test_the_folder_follows_from_the_request_in_any_order(tmp_path, monkeypatch)
         assert elsewhere == "settings: methods"
 
 
-def test_the_checksum_is_the_same_whatever_the_order_of_the_settings():
-    one, two = request(seed=1, methods=("exact",)), request(methods=["exact"], seed=1)
-    assert own(one) == own(two) != own(request(methods=["exact"], seed=2))
-
-
 def test_what_differs_from_the_plain_request_is_named():
     assert request(seed=1, methods=["fem"], count=None).changed == "settings: seed, methods"
     assert request(**dict.fromkeys("abcde", 1)).changed == "settings: a, b, c, 2 more"
@@ -203,15 +198,6 @@ def test_a_process_that_has_just_begun_is_waited_for(monkeypatch):
     assert json.loads((USUAL / "results.json").read_text("utf-8")) == one.asked
 
 
-@pytest.mark.slow
-def test_ten_runs_at_once_write_ten_folders():
-    command = [sys.executable, "-m", "partialslip", *EXACT, "--set"]
-    runs = [subprocess.Popen([*command, f"friction.f=0.{number}"], stdout=subprocess.DEVNULL) for number in range(10)]
-    assert {run.wait() for run in runs} == {0}
-    scenes = [json.loads(path.read_text("utf-8"))["scene"] for path in Path("results").glob("*/results.json")]
-    assert sorted(scene["friction"]["f"] for scene in scenes) == [number / 10 for number in range(10)]
-
-
 def test_a_file_is_overwritten_by_its_own_content_only():
     def text(content):
         return lambda path: path.write_text(content, "utf-8")
@@ -253,27 +239,6 @@ def folders():
     return sorted(path.name for path in Path("results").iterdir())
 
 
-@pytest.mark.slow
-def test_runs(capsys, refused):
-    """A title changes no result; neither does a setting or a method that the scene has anyway."""
-    usual = Path("results", "hertz-shear")
-    run = ("run", "hertz-shear", "--set", "fem.accuracy=1e-2")
-    assert main(run) == 0
-    (first,) = folders()
-    assert main([*run, "--with", "fem,exact", "--set", "title=Another", "-v"]) == 0
-    assert main([*run, "--set", "friction.f=0.5", "--out", "mine"]) == 0
-    assert folders() == [first]
-    capsys.readouterr()
-    assert main([*run, "--set", "friction.f=0.4"]) == 0
-    said = capsys.readouterr().out.splitlines()[-1]
-    (second,) = {*folders()} - {first}
-    assert said.endswith(f"; files in {Path('results', second)} (settings: friction.f, fem.accuracy)")
-    assert main([*EXACT, "--set", "friction.f=0.4", "--out", str(usual)]) == 0
-    capsys.readouterr()
-    refused(*EXACT, "--out", str(usual))
-    assert "holds run hertz-shear: name another folder" in refused("map", "hertz-shear", "--out", str(usual))
-
-
 @pytest.mark.parametrize(
     ("command", "name"), [("map", "hertz-shear-map"), ("page", "hertz-shear-page"), ("export", "hertz-shear-gmsh.msh")]
 )
@@ -301,6 +266,7 @@ friction = { f = 0.3 }
 """
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 def test_units_are_a_setting_unless_they_are_the_scenes_own(capsys):
     """Files are written in them, and tables read in them."""
@@ -325,26 +291,6 @@ def test_what_a_folder_holds_is_told_in_the_units_of_the_scene(refused, capsys):
     capsys.readouterr()
     said = refused("map", "mm.toml", "--set", "load.Q=[-20,20]", "--out", "results/mm-map")
     assert "holds map mm with other settings: load.P = 200 N/mm, load.Q = [-30, 30] N/mm: name another" in said
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("coarse")
-def test_an_edited_scene_file(capsys):
-    """Its results do not overwrite those of the former edition; with --set each edition has a folder of its own."""
-    text = (Path(partialslip.__file__).parent / "scene/shipped/hertz-shear.toml").read_text("utf-8")
-    run = ["run", "mine.toml", "--with", "exact"]
-    for edition in (text, text.replace("f = 0.5", "f = 0.4")):
-        Path("mine.toml").write_text(edition, "utf-8")
-        for more in ([], [], ["--set", "load.steps=2"]):
-            assert main([*run, *more]) == 0
-        assert main(["map", "mine.toml"]) == 0
-    scenes = [json.loads(path.read_text("utf-8"))["scene"] for path in Path("results").glob("*/results.json")]
-    found = sorted((scene["friction"]["f"], scene["load"]["steps"]) for scene in scenes)
-    assert found == [(0.4, 1), (0.4, 2), (0.5, 1), (0.5, 2)]
-    usual = Path("results", "hertz-shear-map")
-    assert len(list(Path("results").glob("*-map*"))) == 2
-    last = capsys.readouterr().out.splitlines()[-1]
-    assert last.endswith(f" ({usual} holds map hertz-shear with other settings: friction.f = 0.5)")
 
 
 def test_a_file_that_needs_an_option_has_no_usual_folder(capsys):
@@ -374,6 +320,7 @@ def test_scores_of_another_content_or_factor():
     assert len(folders()) == 3
 
 
+@pytest.mark.slow
 def test_a_folder_below_any_number_of_new_ones(capsys):
     deep = "/".join(["a"] * 1500)
     assert main([*EXACT, "--out", deep]) == 0

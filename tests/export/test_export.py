@@ -14,7 +14,7 @@ from partialslip import load_scene
 from partialslip.cli import main
 from partialslip.codes.export import FORMATS, export
 from partialslip.codes.export import model as models
-from partialslip.codes.export.calculix import deck_units
+from partialslip.codes.export.inp import deck_units
 from partialslip.codes.export.model import modelled
 from partialslip.scene.units import N_MM, N_UM, SI
 from partialslip.tools.errors import InputError
@@ -299,24 +299,6 @@ def test_what_cannot_be_exported(override, said):
         export(load_scene(SCENE, [override]), "abaqus")
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--to", "abaqus", "--size", "0"], "--size '0'"),
-        (["--to", "abaqus", "--size", "x"], "--size 'x'"),
-        (["--to", "ansys"], "ansys"),
-        (["--to", "gmsh", "--penalty"], "penalty"),
-        (["--to", "gmsh", "--ends=0,2"], "--ends '2'"),
-        (["--to", "gmsh", "--out", ""], "--out"),
-        ([], "--to"),
-    ],
-)
-def test_bad_options(options, said, refused, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert said in refused("export", SCENE, *options)
-    assert not list(tmp_path.iterdir())
-
-
 def test_command(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     coarse = ("--size", "0.5", "--growth", "1")
@@ -327,17 +309,3 @@ def test_command(tmp_path, monkeypatch, capsys):
     assert written[3].endswith(".inp (settings: size, growth, stiffer)")
     decks = sorted(re.sub("-[0-9a-f]{8}[.]", "-HASH.", path.name) for path in (tmp_path / "results").iterdir())
     assert decks == [f"{SCENE}-{to}-HASH.inp" for to in ("abaqus", "calculix", "calculix")]
-
-
-def test_the_deck_of_the_scene_alone_has_the_usual_name(tmp_path, monkeypatch):
-    """Whatever was written before, and however its own settings are given. An edited deck stays."""
-    monkeypatch.chdir(tmp_path)
-    for options in (["--size", "0.5"], [], ["--size", "5e-2", "--set", "load.steps=1"]):
-        assert main(["export", SCENE, "--to", "gmsh", *options]) == 0
-    usual = tmp_path / "results" / f"{SCENE}-gmsh.msh"
-    assert len(list(usual.parent.iterdir())) == 2
-    mesh = usual.read_bytes()
-    usual.write_text("edited", "utf-8")
-    assert main(["export", SCENE, "--to", "gmsh"]) == 0
-    assert usual.read_text("utf-8") == "edited"
-    assert mesh in [path.read_bytes() for path in usual.parent.iterdir()]

@@ -145,21 +145,6 @@ def test_the_errors_of_ruiz_tell_how_far_methods_are_apart(assessed):
     assert partialslip.assess(scene, fem, ["ruiz"], body="upper").ruiz.errors is None
 
 
-@pytest.mark.parametrize(
-    ("scene", "criteria", "line"),
-    [
-        (SCENE, ["miner"],
-         "criterion 'miner': must be of principal, swt, fatemi-socie, findley, dang-van, crossland, ruiz"),
-        (SCENE.replace(fatigue={"k_findley": None}), ["findley"],
-         "fatigue.k_findley: missing; the criterion findley needs it"),
-        (SCENE.replace(fatigue={"sigma_y": None}), ["fatemi-socie"],
-         "fatigue.sigma_y: missing; the criterion fatemi-socie needs it"),
-    ],
-)  # fmt: skip
-def test_what_is_missing_is_said_in_one_line(scene, criteria, line):
-    assert line_of(partialslip.assess, scene, RESULT, criteria) == line
-
-
 PULLED = SCENE.replace(bodies={"lower": {"width": 40e-3, "height": 4e-3, "support": "roller"}})
 
 
@@ -223,14 +208,6 @@ def test_other_units_change_nothing(assessed):
     for name, rating in found.ratings.items():
         factor = 1.0 if name == "fatemi-socie" else 1e3
         assert rating.surface.value == pytest.approx(factor * assessed.ratings[name].surface.value, rel=1e-9)
-
-
-@pytest.mark.slow
-def test_notebooks_show_tables_and_curves(assessed):
-    html = assessed._repr_html_()
-    assert html.count("<tr") >= 7
-    assert "<svg" in html
-    assert repr(assessed).splitlines()[1].startswith("  principal: 6.91494e+08 at x = 1 a")
 
 
 def test_all_load_points_of_the_scene_count():

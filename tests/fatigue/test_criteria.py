@@ -14,7 +14,7 @@ from partialslip.study.fatigue import (
     smith_watson_topper,
     with_zz,
 )
-from partialslip.study.fatigue.invariants import smallest_sphere
+from partialslip.study.fatigue.criteria import smallest_sphere
 
 E, NU, SIGMA_Y, K, ALPHA = 72.1e9, 0.33, 500e6, 0.7, 0.3
 PLANES = {

@@ -57,7 +57,7 @@ def test_labels_of_contours_keep_off_the_contact_and_keep_their_sign(scene, resu
     assert any(text.get_text().startswith(MINUS) for _, text in labels)
 
 
-@pytest.mark.parametrize("names", [["swt"], ["swt", "principal"], ["swt", "principal", "findley"]])
+@pytest.mark.parametrize("names", [["swt"], pytest.param(["swt", "principal", "findley"], marks=pytest.mark.slow)])
 def test_polar_plots_fill_their_figure(scene, result, sheet_of, names):
     scene = scene.replace({"fatigue.k_findley": 0.3}) if "findley" in names else scene
     sheet = sheet_of(figures.planes_svg, assess(scene, result, names))

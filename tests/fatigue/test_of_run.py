@@ -5,7 +5,7 @@ import pytest
 import partialslip
 from partialslip.cli import main
 from partialslip.study.fatigue import hot_spots
-from partialslip.study.fatigue.of_run import criteria_sections
+from partialslip.study.fatigue.page import criteria_sections
 
 ASKED = ["fatigue.distance=2e-5"]
 

@@ -24,6 +24,7 @@ def test_the_exact_values_are_todays():
     assert exact / [1e6, 1e6, 1, 1e6, 1] == pytest.approx(shown, rel=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("order", "elements"), [(1, "linear"), (2, "quadratic")])
 def test_the_errors_are_todays(order, elements):
     """Meshes differ a little from version to version of gmsh: to a fifth of an error at the surface."""

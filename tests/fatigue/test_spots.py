@@ -6,7 +6,7 @@ import pytest
 
 import partialslip
 from partialslip.scene.plan import asks_for_stresses
-from partialslip.study.fatigue import HotSpot, accuracy, assess, hot_spots
+from partialslip.study.fatigue import HotSpot, assess, assessment, hot_spots
 from partialslip.study.fatigue.spots import off_by
 
 SCENE = partialslip.load_scene("fretting-aluminium").replace({"fatigue.distance": 50e-6, "fem.accuracy": 1e-4})
@@ -82,7 +82,7 @@ def test_estimates_hold(exact, method):
 def test_the_estimate_needs_the_error_at_the_ends_of_the_contact(exact, monkeypatch):
     """Deliberate fault: without the error of the Cauchy integrals at the ends, the estimate of swt is too small (but on
     the mesh for 1e-4, which happens to leave a tenth of the error of finer and coarser ones)."""
-    monkeypatch.setattr(accuracy, "_edge_error", lambda *_: 0.0)
+    monkeypatch.setattr(assessment, "_edge_error", lambda *_: 0.0)
     fem = partialslip.run(SCENE.replace({"fem.accuracy": 5e-5}), "fem", subsurface=True)["fem"]
     found = hot_spots(SCENE, fem)
     assert off_by(found["swt"], hot_spots(SCENE, exact)["swt"]) > found["swt"].error

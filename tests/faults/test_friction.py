@@ -11,6 +11,7 @@ from scipy.interpolate import PPoly
 import partialslip
 from partialslip.friction import coulomb_constant_pressure, coupled_step, zone_ends
 from partialslip.friction.active_set import _BlockPivoting, solve_bounded
+from partialslip.friction.contact_line import ContactLine
 from partialslip.friction.coulomb_constant_pressure import march as true_march
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march import similar as marching
@@ -160,12 +161,12 @@ def test_slip_of_the_other_body(monkeypatch, sound, red):
 def test_stick_zone_from_flags_of_one_instant(monkeypatch, sound, red):
     """With a mean load nodes rest on the bound without slipping any more: who is on it at load point 2 says little."""
 
-    def flagged(line, nodes, history, *_):
-        sticks = line.x[nodes][np.abs(history.q2) < (1 - 1e-9) * history.bound]
+    def flagged(line, history, *_):
+        sticks = line.x[np.abs(history.q2) < (1 - 1e-9) * history.bound]
         return StickInterval(float(sticks[0]), float(sticks[-1]), (-1, 1))
 
     scene = sound(LARGE, *MEAN)
-    monkeypatch.setattr(solving, "stick_zone_of", flagged)
+    monkeypatch.setattr(ContactLine, "stick_zone", flagged)
     red.comparison("n", scene)
 
 

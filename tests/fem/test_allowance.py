@@ -6,7 +6,7 @@ import pytest
 
 from partialslip import Allowance, InputError, load_scene, plan, run
 from partialslip.result import Clock, Pace
-from partialslip_fem import estimate, solve, solving
+from partialslip_fem import adapt, solve, solving
 
 ASKED = 1e-6
 SCENE = load_scene("hertz-small-tension", [f"fem.accuracy={ASKED!r}"])
@@ -18,7 +18,7 @@ class Counter:
 
     def __init__(self, monkeypatch):
         self.seconds = 0.0
-        for module, name in ((solving, "mesh_and_solve"), (estimate, "neighbour")):
+        for module, name in ((solving, "mesh_and_solve"), (adapt, "neighbour")):
             monkeypatch.setattr(module, name, self._counted(getattr(module, name)))
 
     def _counted(self, solution):

@@ -6,7 +6,7 @@ import pytest
 
 import partialslip
 from partialslip.result import Clock
-from partialslip_fem import adapt, estimate
+from partialslip_fem import estimate, grading
 from partialslip_fem.bodies import Grading
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.problem import scaled
@@ -52,7 +52,7 @@ def test_error_of_p_is_told(order, b):
 
 def coarse(monkeypatch):
     """A run with elements so large at the ends of the flat that they alone make p miss its accuracy."""
-    monkeypatch.setattr(adapt, "_AT_BENDS", 40.0)
+    monkeypatch.setattr(grading, "_AT_BENDS", 40.0)
     outcome = partialslip.run(partialslip.load_scene("flat-rounded", ["fem.accuracy=1e-7"]))
     return outcome.comparisons["fem"].p, outcome.results["fem"].estimate["p"]
 

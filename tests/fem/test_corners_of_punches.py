@@ -5,7 +5,7 @@ import pytest
 from flats import beside_the_flat
 
 import partialslip
-from partialslip.verify.hard_cases.scenes import hard_scene
+from partialslip.verify.hard_cases import hard_scene
 from partialslip_fem import goals
 
 FAMILY = 512

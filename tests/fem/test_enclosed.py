@@ -8,6 +8,7 @@ import pytest
 import partialslip
 from partialslip import load_scene, parse_scene
 from partialslip_fem import adapt
+from partialslip_fem.load_steps import LoadSteps
 from partialslip_fem.mesh_solution import MeshSolution
 
 # the first mesh of quadratic triangles is too coarse for this material: by its solution the contact is too narrow
@@ -56,13 +57,12 @@ def test_a_contact_that_finer_steps_widen_gets_a_wider_line(monkeypatch):
     *_, meshes = solved()
     lines = []
 
-    def wider(refinement):
-        x = refinement.solution.lower.x
+    def wider(_, solution):
+        x = solution.lower.x
         lines.append(x[-1] - x[0])
-        if len(lines) == 1:
-            refinement.solution = replace(refinement.solution, most=np.ones_like(x), moving=True)
+        return replace(solution, most=np.ones_like(x), moving=True) if len(lines) == 1 else solution
 
-    monkeypatch.setattr(adapt._Refinement, "check_steps", wider)
+    monkeypatch.setattr(LoadSteps, "checked", wider)
     error, estimate, more = solved()
     assert error < estimate
     assert more > meshes

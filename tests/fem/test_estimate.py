@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import partialslip
-from partialslip.run.judge.means import cell_means
+from partialslip.run.judge.measures import cell_means
 from partialslip.scene.reading import parse_scene
-from partialslip_fem import estimate, goals, solving
+from partialslip_fem import adapt, estimate, goals, solving
 from partialslip_fem.solving import solve_on_meshes
 
 SCENES = [
@@ -158,8 +158,8 @@ def test_a_kink_where_an_end_turned_round_within_an_element_is_seen(monkeypatch)
 def test_the_place_of_an_end_in_its_element_counts(monkeypatch):
     """The same mesh, stretched so that the end of a Hertz contact moves from a vertex into the element: the error of a
     grows, and elements of the order below do not see it. Deliberate fault: ends are taken to be at vertices."""
-    solved, true = [], estimate.neighbour
-    monkeypatch.setattr(estimate, "neighbour", lambda *given: solved.append(given) or true(*given))
+    solved, true = [], adapt.neighbour
+    monkeypatch.setattr(adapt, "neighbour", lambda *given: solved.append(given) or true(*given))
     scene = partialslip.load_scene("hertz-shear", ["load.Q=[0, 0]", "fem.accuracy=1e-3"])
     results = partialslip.run(scene, ["fem", "exact"]).results
     solution, problem, width, clock = solved[-1]

@@ -10,8 +10,8 @@ import scipy.linalg as la
 import partialslip
 from partialslip.result import Clock, Traction, TractionAt
 from partialslip.run.judge import cell_errors
-from partialslip.run.judge.means import norm_errors
-from partialslip_fem import adapt, bodies
+from partialslip.run.judge.measures import norm_errors
+from partialslip_fem import bodies, grading
 from partialslip_fem.bodies import Grading
 from partialslip_fem.problem import scaled
 from partialslip_fem.solving import mesh_and_solve
@@ -142,7 +142,7 @@ def test_vertices_of_two_triangles_deceive_the_estimate(monkeypatch, finer):
     """Deliberate fault: elements of both orders share the oscillation beside such a vertex, so that their difference
     does not tell it. Fits to five and to three vertices differ by a part of it: m is off by more than its estimate, and
     by nine times the estimate on sound meshes."""
-    monkeypatch.setattr(adapt, "_AT_BENDS", 0.0)  # small elements at the ends of the flat, among which the vertex was
+    monkeypatch.setattr(grading, "_AT_BENDS", 0.0)  # small elements at the ends of the flat, among which the vertex was
     sound = block_on_specimen(ACCURACY)
     monkeypatch.setattr(bodies, "fanned", lambda mesh: mesh)
     found = block_on_specimen(ACCURACY)

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import partialslip
+from partialslip.friction import contact_line
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.scene.reading import parse_scene
-from partialslip_fem import adapt, estimate, locked, zones
+from partialslip_fem import estimate, grading, locked
 from partialslip_fem.locked import locked_in
 
 
@@ -146,7 +147,7 @@ def test_how_long_an_end_that_jumped_was_off_its_way_is_seen(monkeypatch):
         }
     )
     exact = partialslip.run(scene, ["exact"]).results["exact"]
-    monkeypatch.setattr(adapt, "_AT_BENDS", 0.0)  # on meshes that are fine at the ends of the flat, the end hops
+    monkeypatch.setattr(grading, "_AT_BENDS", 0.0)  # on meshes that are fine at the ends of the flat, the end hops
     found, known = ratios(scene, exact)
     assert found.min() > 1
     assert known.max() <= scene.fem.accuracy
@@ -166,8 +167,8 @@ def test_an_end_that_came_back_to_where_it_turned_round_is_seen(monkeypatch):
     found, known = ratios(scene, exact)
     assert found.min() > 1
     assert known.max() <= scene.fem.accuracy
-    read = zones.read_stick_zone
-    monkeypatch.setattr(zones, "read_stick_zone", lambda *given: read(*given[:-1]))
+    read = contact_line.read_stick_zone
+    monkeypatch.setattr(contact_line, "read_stick_zone", lambda *given: read(*given[:-1]))
     found, _ = ratios(scene, exact)
     assert found.min() < 0.6
 

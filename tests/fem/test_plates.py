@@ -21,8 +21,8 @@ from partialslip.march.equivalent import stand_ins
 from partialslip.result.record import PlatesRecord
 from partialslip.run import default_methods
 from partialslip.scene import Bodies
-from partialslip.scene.writing import scene_toml
-from partialslip.verify.hard_cases.scenes import hard_scene
+from partialslip.scene.reading import scene_toml
+from partialslip.verify.hard_cases import hard_scene
 from partialslip_fem import first_mesh, plates
 from partialslip_fem.bodies import Kept
 from partialslip_fem.method import solve

@@ -21,7 +21,7 @@ from partialslip.friction.coupled_step import solve as solve_step
 from partialslip.friction.even_gap import EvenGap
 from partialslip.friction.pressing import FlatPunch, Punches
 from partialslip.halfplane.punch import Punch as Flats
-from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import norm_errors
 from partialslip_fem import solve, solving
 from partialslip_fem.problem import ScaledProblem
 

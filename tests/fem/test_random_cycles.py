@@ -11,7 +11,7 @@ from coulomb import recorded
 from random_marches import complaints, trials
 
 import partialslip
-from partialslip.friction import coulomb_constant_pressure
+from partialslip.friction import coulomb_constant_pressure, coulomb_legs
 from partialslip.verify.random_scenes import KINDS, PROFILES, draw
 
 EVERY = [kind + len(KINDS) * (kind % len(PROFILES)) for kind in range(len(KINDS))]  # kinds of loads, profiles in turn
@@ -104,13 +104,13 @@ def test_slip_of_the_way_back_is_seen(monkeypatch):
     scene = partialslip.load_scene(
         "hertz-large-tension", ["fem.accuracy=1e-2", "load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]"]
     )
-    true = coulomb_constant_pressure.follow
+    true = coulomb_legs.follow
 
     def turned(*given, **named):
         found = true(*given, **named)
         return replace(found, slip=found.slip - found.net_slip)
 
-    monkeypatch.setattr(coulomb_constant_pressure, "follow", turned)
+    monkeypatch.setattr(coulomb_legs, "follow", turned)
     with recorded() as marches:
         partialslip.run(scene, ["fem"])
     found = {complaint.split(",")[0] for march in marches for complaint in march.complaints()}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from partialslip import load_scene, parse_scene, run
-from partialslip.march import similar as marching
+from partialslip.march import driver
 from partialslip.tools.errors import InputError
 
 sys.path.append(str(Path(__file__).parent.parent / "halfplane"))
@@ -78,7 +78,7 @@ def test_contacts_that_have_nothing_in_common():
 def test_no_stick_zone_without_a_point_in_contact_at_both_load_points(method, monkeypatch):
     """A punch that rolls from one edge to the other, in which no point sticks all the time. The moment of a single node
     does not depend on the angle; taken for a slope, its rounding error once turned the punch off the other body."""
-    monkeypatch.setattr(marching, "_MESHES", marching._MESHES[:2])
+    monkeypatch.setattr(driver, "MESHES", driver.MESHES[:4])
     scene = load_scene(
         "flat-rounded", ["load.M=[2e3, -2e3]", "fem.accuracy=1e-1", "load.sigma=[0, 0]", "load.cycles=1"]
     )

@@ -11,7 +11,7 @@ import partialslip
 from partialslip.friction import history, limit
 from partialslip.friction.regime import _unsure
 from partialslip.run.judge import Outcome, compare
-from partialslip.run.judge.verdict import Bar, judge_regime
+from partialslip.run.judge.verdicts import Bar, judge_regime
 
 CREEP = {
     "name": "creep",

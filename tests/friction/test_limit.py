@@ -10,7 +10,7 @@ import partialslip
 from partialslip.friction import history
 from partialslip.friction.coulomb_constant_pressure import march
 from partialslip.friction.limit import Cycles, ahead, cycle_change, cycles_settled, limit, lost, room_of, undecided
-from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import norm_errors
 
 BOUND = np.array([1.0, 2.0, 0.5, 0.0])
 END, MODE = np.array([0.3, -1.2, 0.1, 0.0]), np.array([0.2, 0.1, -0.05, 0.0])

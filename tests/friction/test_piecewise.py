@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from partialslip.result import piecewise
-from partialslip.result.piecewise import PiecewiseCauchy
+from partialslip.result import below
+from partialslip.result.below import PiecewiseCauchy
 
 DEPTHS = 10.0 ** np.arange(-12, 1)
 
@@ -93,6 +93,6 @@ def test_work_is_that_of_the_functions_asked_for(monkeypatch):
 @pytest.mark.fault
 def test_near_cells_left_to_the_moments_are_caught(monkeypatch):
     """Deliberate fault: cells near a point taken by the forces at the nodes of their group."""
-    monkeypatch.setattr(piecewise, "_NEAR", 2.5)
+    monkeypatch.setattr(below, "_NEAR", 2.5)
     with pytest.raises(AssertionError):
         test_one_polynomial_on_many_cells(0)

@@ -13,8 +13,8 @@ from partialslip.friction.history import History
 from partialslip.halfplane import contact_of
 from partialslip.halfplane.gradual_path import slips
 from partialslip.halfplane.turning import Turning, half_cycle
-from partialslip.run.judge.means import norm_errors
-from partialslip.verify.hard_cases.scenes import hard_scene
+from partialslip.run.judge.measures import norm_errors
+from partialslip.verify.hard_cases import hard_scene
 
 UNIT = contact_of(lambda x: np.sqrt(1 - x**2), 1.0)
 DRIFT, TO_THE_END, NO_POINT = (0.6434668934976868, 8.670889385947003), (0.75, 6.0), (0.9975, 7.2)

@@ -19,6 +19,7 @@ import numpy as np
 from partialslip.friction import (
     coulomb_constant_pressure,
     coulomb_coupled,
+    coulomb_legs,
     coulomb_varying_pressure,
     history,
     path_following,
@@ -150,6 +151,8 @@ def recorded():
     marches, making, legs = [], [], []
 
     def following(true, path, advance, before, f, **how):
+        if path.followed:  # event by event: there are no steps
+            return true(path, advance, before, f, **how)
         (C, stretch, across, bound), done = making[-1], []
         at_first = bound
 
@@ -194,7 +197,7 @@ def recorded():
     with ExitStack() as patched:
         patched.enter_context(patch.object(path_following.Follower, "leg", leg))
         patched.enter_context(patch.object(path_following.Leg, "mirrored", property(image)))
-        for module in (coulomb_constant_pressure, coulomb_varying_pressure, coulomb_coupled):
+        for module in (coulomb_legs, coulomb_varying_pressure, coulomb_coupled):
             patched.enter_context(patch.object(module, "follow", partial(following, module.follow)))
         for module, march in (
             (coulomb_constant_pressure, straight),

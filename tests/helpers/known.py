@@ -1,7 +1,5 @@
 """Artificial results: Hertz under shear alone, after Cattaneo and Mindlin, with optional errors."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from partialslip import load_scene
@@ -58,8 +56,3 @@ def result(method="fem", centre=0.0, half_width=C, a=1.0, regime="small tension"
 
 
 EXACT = result("exact", estimate={})
-scene = SCENE
-
-
-def without_friction():
-    return replace(EXACT, regime="sliding", stick_centre=None, stick_half_width=None)

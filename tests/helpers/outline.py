@@ -8,12 +8,12 @@ import pytest
 
 
 class Outline(html.parser.HTMLParser):
-    """Tags of a page with their attributes, its links, its text, and its scripts; an end tag that closes nothing is an
-    error."""
+    """Tags of a page with their attributes, its links, its text, its scripts, and the text of the cells of tables by
+    row; an end tag that closes nothing is an error."""
 
     def __init__(self, text):
         super().__init__()
-        self.open, self.tags, self.links, self.text, self.scripts = [], [], [], [], []
+        self.open, self.tags, self.links, self.text, self.scripts, self.rows = [], [], [], [], [], []
         self.feed(text)
         self.close()
 
@@ -21,6 +21,10 @@ class Outline(html.parser.HTMLParser):
         self.handle_startendtag(tag, attributes)
         if tag not in ("meta", "link", "br", "hr", "img", "input"):
             self.open.append(tag)
+        if tag == "tr":
+            self.rows.append([])
+        elif tag in ("td", "th"):
+            self.rows[-1].append("")
 
     def handle_startendtag(self, tag, attributes):
         self.tags.append((tag, dict(attributes)))
@@ -31,6 +35,8 @@ class Outline(html.parser.HTMLParser):
 
     def handle_data(self, data):
         (self.scripts if "script" in self.open else self.text).append(data)
+        if self.open and self.open[-1] in ("td", "th"):
+            self.rows[-1][-1] += data
 
     @property
     def names(self):

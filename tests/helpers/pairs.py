@@ -20,8 +20,8 @@ from partialslip.friction import coulomb_constant_pressure as coulomb
 from partialslip.friction import steps
 from partialslip.friction.coupled_step import Relative
 from partialslip.friction.history import History
+from partialslip.march import driver
 from partialslip.march import method as marching
-from partialslip.march import similar
 from partialslip.result import Clock, Result
 from partialslip.run.judge import Q_BAR, cell_means
 from partialslip.scene import Scene
@@ -142,7 +142,7 @@ def guise(*patches: Any, own: bool = False) -> Iterator[None]:
     meshes do."""
     with ExitStack() as stack:
         if not own:
-            stack.enter_context(patch.object(similar, "_MESHES", ((1e-3, 0.1),)))
+            stack.enter_context(patch.object(driver, "MESHES", ((1e-3, 0.1),)))
             stack.enter_context(patch.object(steps, "one_step_suffices", lambda _: True))
         called = [stack.enter_context(each) for each in patches]
         yield

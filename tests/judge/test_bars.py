@@ -57,3 +57,23 @@ def test_at_the_largest_bar_a_spoiled_table_is_missed():
     for spoiled in (traction(p=0.05, q=0.0), traction(q=0.0), traction(p=0.85), traction(q=1.15)):
         assert compare(result(of=spoiled), EXACT, SCENE, 0.1).outcome is Outcome.MISSED
     assert compare(result(), EXACT, SCENE, 0.1).outcome is Outcome.PASSED
+
+
+@pytest.mark.parametrize(
+    ("m", "n", "factor"), [(0.3, 0.3, 3.9), (0.5, 0.5, 5.0), (0.8, 0.2, 4.8), (0.8, 0.8, 10.3), (0.95, 0.95, 34)]
+)
+def test_what_an_end_that_is_off_does_to_norms(m, n, factor):
+    """Relative errors of p and q of Hertz and small tension over the error of all ends (docs/measures.md)."""
+    d, angle = 2e-5, np.pi * (np.arange(200_000) + 0.5) / 200_000
+    x, weight = -1.001 * np.cos(angle), 1.001 * np.sin(angle)
+
+    def tractions(off):
+        a, half = 1 + off, (m + n) / 2 + off
+        p, stuck = (
+            np.sqrt(np.maximum(1 - ((x - at) / c) ** 2, 0)) * c / a**2 for at, c in ((0, a), ((n - m) / 2, half))
+        )
+        return p, p - stuck
+
+    for before, after, expected in zip(tractions(0.0), tractions(d), (3.0, factor), strict=True):
+        off = np.sqrt(np.sum(weight * (after - before) ** 2) / np.sum(weight * before**2))
+        assert off / d == pytest.approx(expected, rel=0.03)

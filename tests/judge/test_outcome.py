@@ -6,8 +6,8 @@ import pytest
 from rule import STICKS, asks_every_question, verdicts
 
 from partialslip.run.judge import NO_BAR, Conclusion, Outcome, Verdict, conclude, of_run, together
-from partialslip.run.judge import outcome as module
-from partialslip.run.judge.outcome import headline
+from partialslip.run.judge import verdicts as module
+from partialslip.run.judge.verdicts import headline
 from partialslip.tools.bars import BARS
 
 PASSED, MISSED, NOT_JUDGED = Outcome.PASSED, Outcome.MISSED, Outcome.NOT_JUDGED

@@ -11,11 +11,10 @@ import partialslip
 from partialslip import compare, load_scene
 from partialslip.result import RATCHETS
 from partialslip.run import compared, default_methods
-from partialslip.run.judge import Outcome, outcome, verdict
-from partialslip.run.judge.known import error_of
-from partialslip.run.judge.reference import ALL_EFFECTS, reference, reference_among
+from partialslip.run.judge import Outcome, verdicts
+from partialslip.run.judge.reference import ALL_EFFECTS, error_of, reference, reference_among
+from partialslip.run.methods import METHODS, REFERENCES
 from partialslip.scene.plan import plan
-from partialslip.tools.methods import METHODS, REFERENCES
 
 KNOWN = {"a": 1e-6, "p": 1e-6, "m": 1e-6, "n": 1e-6, "q": 1e-6}
 STEEL = "material={lower={E=2.1e11, nu=0.3}, upper={E=0.7e11, nu=0.3}}"
@@ -154,7 +153,7 @@ def test_a_reference_without_an_estimate_judges_nothing(monkeypatch):
     assert (found.missed, found.conclusion.code) == ((), 4)
     other = compare(replace(right, regime="small tension"), replace(wrong, regime="large tension"), OUT_OF_PHASE, 1e-3)
     assert {each.quantity: each.reason for each in other.verdicts}["regime"] == "march has no error estimate of m and n"
-    monkeypatch.setattr(verdict, "error_of", lambda result, quantity, _: result.estimate.get(quantity, 0.0))
+    monkeypatch.setattr(verdicts, "error_of", lambda result, quantity, _: result.estimate.get(quantity, 0.0))
     assert any(each.startswith("m: ") for each in compare(right, wrong, OUT_OF_PHASE, 1e-3).missed)
 
 
@@ -181,7 +180,7 @@ def test_a_contact_that_ratchets_does_not_pass(monkeypatch):
     assert compared(SCENE, plan(SCENE), {"exact": exact, "fem": lone}, 1e-3).missed == (
         "fem: regime: large tension, not ratchets",
     )
-    monkeypatch.setattr(outcome, "_OTHERS", {"ratchets": ("regime", "a", "p")})
+    monkeypatch.setattr(verdicts, "_OTHERS", {"ratchets": ("regime", "a", "p")})
     assert compared(SCENE, plan(SCENE), {"exact": exact, "fem": fem}, 1e-3).conclusion.code == 0
 
 

@@ -8,7 +8,7 @@ from msgspec.structs import replace as changed
 
 from partialslip import compare
 from partialslip.run.judge import Outcome
-from partialslip.run.judge.verdict import _barely, _too_near
+from partialslip.run.judge.verdicts import _barely, _too_near
 
 NEXT = 1 - 1e-12
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from partialslip.result import StressAt, SurfaceStress
-from partialslip.run.judge.means import norm_errors
-from partialslip.run.judge.measures import inside_error, surface_error
+from partialslip.run.judge.measures import inside_error, norm_errors, surface_error
 
 
 def surface(of=lambda x: 1.0 + 0 * x):

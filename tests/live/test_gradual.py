@@ -16,7 +16,7 @@ from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.halfplane.steady import stick_zones
 from partialslip.scene.gradual import turns_round
-from partialslip.study.live import page
+from partialslip.study import live
 
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(not NODE, reason="node is not installed")
@@ -42,7 +42,7 @@ def answered(script, told, change=lambda text: text):
 
 def asked(loads, change=lambda text: text):
     """Left end, right end and s by the page's program, None where it has none."""
-    return answered(ASK, {"table": page._table(), "loads": loads.tolist()}, change)
+    return answered(ASK, {"table": live._table(), "loads": loads.tolist()}, change)
 
 
 def turned():
@@ -116,4 +116,4 @@ def test_a_rounded_middle_shows():
 
 
 def test_the_table_on_the_page_is_small():
-    assert len(json.dumps(page._table())) < 60_000
+    assert len(json.dumps(live._table())) < 60_000

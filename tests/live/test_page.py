@@ -160,7 +160,7 @@ def pressed_by(P, scene):
 def python_zone(page, scene):
     """Return m and n by Python for the loads shown on the page, in SI units."""
     loads = page.run("page.loads()")
-    pressed = pressed_by(loads["P1"], scene)
+    pressed = pressed_by(loads["P"], scene)
     signs = loads["turn"], loads["turn"] * loads["mirror"]
     found = halfplane.stick_zone(pressed, loads["f"], signs[0] * loads["dQ"], signs[1] * loads["dsigma"])
     return float(found.m) / pressed.a, float(found.n) / pressed.a
@@ -216,7 +216,7 @@ def test_a_normal_force_is_typed(page):
     page.run("const force = document.querySelector('[type=number][data-sets=P]'); force.focus(); force.select()")
     page.send("Input.insertText", text="700")
     found, pressed = answer(page), pressed_by(7e5, scene)
-    assert page.run("page.loads()") == {**before, "P1": 7e5, "P2": 7e5}
+    assert page.run("page.loads()") == {**before, "P": 7e5}
     assert (found.a, found.p0) == pytest.approx((pressed.a, pressed.p0), rel=1e-12)
     assert found.Qf == pytest.approx(scene.load.dQ / (2 * scene.friction.f * 7e5), rel=1e-12)
     assert found.sf == pytest.approx(scene.load.dsigma / (scene.friction.f * pressed.p0), rel=1e-12)
@@ -234,7 +234,7 @@ def test_the_slider_of_P_by_keyboard(page):
     assert abs(value * 1e3 - load_scene(LARGE).P) <= step * 1e3 / 2
     page.run("document.getElementById('P').focus()")
     page.press("ArrowRight", times=3)
-    assert page.run("page.loads().P1") == pytest.approx((value + 3 * step) * 1e3, rel=1e-12)
+    assert page.run("page.loads().P") == pytest.approx((value + 3 * step) * 1e3, rel=1e-12)
 
 
 SETTINGS = "document.getElementById('opposite').click();" + "".join(
@@ -274,8 +274,7 @@ def test_what_is_no_setting_in_a_link_is_left_out(browser, folder, link):
     loads = page.run("page.loads()")
     scene = load_scene(LARGE)
     f = 0.25 if "0.25" in link else scene.friction.f
-    pressing = {"varies": False, "P1": scene.P, "P2": scene.P, "e1": 0, "e2": 0}
-    assert loads == {**pressing, "f": f, "dQ": scene.load.dQ, "dsigma": scene.load.dsigma, "turn": 1, "mirror": 1}
+    assert loads == {"P": scene.P, "f": f, "dQ": scene.load.dQ, "dsigma": scene.load.dsigma, "turn": 1, "mirror": 1}
     assert page.errors == []
 
 

@@ -77,16 +77,6 @@ def hertz(tmp_path_factory):
     return folder
 
 
-@pytest.mark.usefixtures("coarse")
-def test_files_without_a_scene(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["map"]) == 0
-    printed = capsys.readouterr()
-    assert printed.out == f"written: map.svg, ends.svg, map.csv in {Path('results', 'map')}\n"
-    assert printed.err == ""
-    assert names(tmp_path / "results" / "map") == FILES
-
-
 @pytest.mark.slow
 def test_table_against_one_zone_at_a_time(hertz):
     table = rows(hertz)
@@ -188,22 +178,6 @@ def test_labels_keep_apart(hertz):
     assert apart[~np.eye(len(places), dtype=bool)].min() > 12  # points; the text is 8 high
 
 
-def test_a_label_does_not_stand_beside_one_that_says_the_same(hertz):
-    svg = (hertz / "map.svg").read_text("utf-8")
-    found = re.findall(r"translate\(([\d.]+) ([\d.]+)\)[^>]*>([mn] [^<]+)<", svg)
-    for number, (x, y, text) in enumerate(found):
-        apart = [np.hypot(float(x) - float(u), float(y) - float(v)) for u, v, other in found[:number] if other == text]
-        assert min(apart, default=np.inf) > 30  # points
-
-
-@pytest.mark.slow
-def test_same_map_same_files(hertz, tmp_path):
-    assert main(["map", "--out", str(tmp_path)]) == 0
-    assert {name: (tmp_path / name).read_bytes() for name in FILES} == {
-        name: (hertz / name).read_bytes() for name in FILES
-    }
-
-
 @pytest.mark.slow
 def test_a_scene_on_the_map(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
@@ -248,14 +222,6 @@ def test_finite_bodies_are_said_to_be_left_out():
     assert lines[-1] == "the map shows half-planes: bodies.lower left out"
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("coarse")
-def test_the_map_reaches_up_to_the_scene():
-    data = stick_map(scene("load.sigma=[-3e9, 3e9]"))
-    assert data.point.place[1] == pytest.approx(30)
-    assert data.grid.sf.max() == pytest.approx(36, abs=1)
-
-
 @pytest.mark.parametrize(
     ("overrides", "expected"),
     [
@@ -282,59 +248,8 @@ def test_words_on_a_scene(overrides, expected):
     assert (data.point is None) != ("the scene's loads" in map_files.map_svg(data))
 
 
-GOOD = (Path(__file__).parents[2] / "src/partialslip/scene/shipped/hertz-large-tension.toml").read_text("utf-8")
-
-
-@pytest.mark.parametrize(
-    ("text", "arguments", "expected"),
-    [
-        (GOOD, ["--out", "file"], "--out file: cannot be written: "),
-        (GOOD, ["--out", "file/inside"], "--out file/inside: cannot be written: "),
-        (GOOD, ["--out", "nul\0"], r"--out nul\x00: cannot be written"),
-        (GOOD, ["--out", ""], "--out '': must name a folder"),
-        (GOOD, ["--out", "."], "map.csv: cannot be written: is a folder"),
-        (GOOD, ["--bogus"], "--bogus"),
-        (GOOD, ["extra"], "extra"),
-        (GOOD.replace("f = 0.5", "f = 0"), [], "friction.f = 0: must be > 0"),
-        (GOOD.replace("f = 0.5", "f = -1"), [], "friction.f = -1"),
-        (GOOD, ["--set", "load.P=-1"], "load.P = -1: must be > 0"),
-        ("name", [], "not valid TOML"),
-    ],
-)
-@pytest.mark.usefixtures("coarse")
-def test_bad_input_is_refused_in_one_line(tmp_path, monkeypatch, refused, text, arguments, expected):
-    monkeypatch.chdir(tmp_path)
-    Path("bench.toml").write_text(text, "utf-8")
-    Path("file").write_text("", "utf-8")
-    Path("map.csv").mkdir()
-    before = sorted(tmp_path.rglob("*"))
-    assert expected in refused("map", "bench.toml", *arguments)
-    assert sorted(tmp_path.rglob("*")) == before
-
-
-def test_a_map_says_what_it_can_draw(refused):
-    """And not what other commands can."""
-    assert "must be of one material for a map\n" in refused(
-        "map", "hertz-shear", "--set", "material={upper={E=2e11,nu=0.3},lower={E=7e10,nu=0.3}}"
-    )
-
-
-def test_settings_of_no_scene_are_refused(refused):
-    said = refused("map", "--set", "friction.f=0.3")
-    assert said == "partialslip: --set friction.f=0.3: must have a SCENE, for example hertz-shear\n"
-
-
 def stop(*_, **__):
     raise KeyboardInterrupt
-
-
-@pytest.mark.parametrize("what", ["map_svg", "ends_svg", "map_csv"])
-@pytest.mark.usefixtures("coarse")
-def test_stopped_before_anything_is_written(tmp_path, monkeypatch, capsys, what):
-    monkeypatch.setattr(map_files, what, stop)
-    assert main(["map", "--out", str(tmp_path / "new")]) == 130
-    assert capsys.readouterr().err == "partialslip: interrupted\n"
-    assert names(tmp_path) == []
 
 
 @pytest.mark.slow

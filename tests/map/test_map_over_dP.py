@@ -10,10 +10,9 @@ from refusing import line_of
 
 from partialslip.cli import main
 from partialslip.halfplane.varying import steady_cycle
-from partialslip.scene.reading import load_scene
-from partialslip.scene.writing import scene_toml
+from partialslip.scene.reading import load_scene, scene_toml
 from partialslip.study.map import place, stick_map, varying, varying_map
-from partialslip.study.map.varying_figure import varying_svg
+from partialslip.study.map.figure import varying_svg
 from partialslip.tools.errors import InputError
 
 P, A = 628318.5307179586, 1e-3  # of hertz-small-tension: a = 1 mm, p0 = 400 MPa, f = 0.5

@@ -6,8 +6,7 @@ from quadrature import rule
 
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
-from partialslip.march.cells import compliance, forces, friction_on, graded_cells
-from partialslip.march.similar import _cells
+from partialslip.march.cells import cells_around, compliance, forces, friction_on, graded_cells
 from partialslip.scene import Friction
 
 POINTS = np.array([-1.0, -0.8, 0.2, 1.0])
@@ -97,7 +96,7 @@ def test_adhered_traction():
 def test_no_dip_of_friction_is_left_out():
     """Each kink of f is an end of a cell, with several cells up to the next one, however coarse the mesh."""
     kinks = [-0.3, -0.3 + 5e-5, -0.3 + 1e-4, 0.6]
-    vertices = _cells([-1.0, 1.0], [], kinks, None, 1e-2, 0.2)
+    vertices = cells_around([-1.0, 1.0], (1e-2, 0.2), bends=kinks, at_bends=32.0)
     at = np.searchsorted(vertices, kinks)
     assert np.array_equal(vertices[at], kinks)
     assert np.diff(at).min() >= 5

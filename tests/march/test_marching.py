@@ -9,10 +9,10 @@ from varying_scenes import varying
 
 import partialslip
 from partialslip.halfplane import contact, one_step_zone
-from partialslip.march import similar as marching
+from partialslip.march import driver
 from partialslip.tools.allowance import Allowance
 from partialslip.tools.bars import BARS
-from partialslip.verify.hard_cases.scenes import hard_scene
+from partialslip.verify.hard_cases import hard_scene
 
 MEAN = ["load.Q=[31415.926535897932, 219911.48575128554]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0
 ROUGH = "fem.accuracy=1e-3"
@@ -37,7 +37,7 @@ def test_order_of_convergence(monkeypatch):
     """m and n are of first order and better in the cells' size at the ends, q of nearly first."""
     scene, errors = partialslip.load_scene("hertz-large-tension"), []
     for mesh in ((1e-2, 0.2), (2.5e-3, 0.1), (6.25e-4, 0.05)):
-        monkeypatch.setattr(marching, "_MESHES", (mesh, mesh))
+        monkeypatch.setattr(driver, "MESHES", (mesh, mesh))
         comparison = partialslip.run(scene, ["exact", "march"]).comparisons["march"]
         errors.append([max(comparison.m, comparison.n), comparison.q])
     orders = -np.polyfit([0, 1, 2], np.log2(errors), 1)[0]
@@ -205,7 +205,7 @@ def test_kinks_that_pass_by_cost_little(method):
     hardly follow them, and the ends of the stick zone are right (a march on 2,700 cells knows them to 2e-6 a)."""
     scene = ellipse("fretting-aluminium", 16, "load.cycles=2", "fem.accuracy=1e-4")
     result = partialslip.run(scene, [method]).results[method]
-    unknowns, meshes = {"march": (850, 4), "fem": (450, 3)}[method]
+    unknowns, meshes = {"march": (850, 5), "fem": (450, 3)}[method]
     assert result.counts["tangential_unknowns"] <= unknowns
     assert result.counts["meshes"] <= meshes
     known = 2e-6  # of 0.196440 and 0.220387
@@ -234,68 +234,42 @@ def test_the_place_of_a_narrow_stick_zone_is_known(k, tension):
     assert largest_ratio(k, tension) <= 1.5
 
 
-@pytest.mark.slow
-@pytest.mark.fault
-def test_a_narrow_zone_errs_as_a_wide_one(monkeypatch):
-    """Deliberate fault: the change of a narrow zone from mesh to mesh is taken for one of the cells beside its ends."""
-    monkeypatch.setattr(marching, "_CARRIED", marching._MOVED)
-    assert largest_ratio(*NARROW[0]) > 2
-
-
 def test_the_estimates_of_small_shear_are_relative_to_one_norm():
     """q is half of q2 - q1, which are opposite without mean loads: their estimates are equal, however small q is."""
     small = partialslip.run(hard_scene("small", 1e-6, 1e-6), ["march"]).results["march"].estimate
     assert small["q"] == pytest.approx(small["q1"], rel=1e-9) == small["q2"]
 
 
-def of_the_soft_end(monkeypatch, share, end, other):
-    """Error of n over its estimate, on three meshes."""
-    monkeypatch.setattr(marching, "_MESHES", marching._MESHES[:3])
-    scene = beside_the_flat(share, end, other)
-    result = partialslip.run(scene, "march")["march"]
-    assert result.m / result.a == pytest.approx(other, abs=result.estimate["m"])
-    return abs(result.n / result.a - end) / result.estimate["n"]
-
-
 @pytest.mark.parametrize(("share", "end", "other"), [(0.6, 0.54, 0.669), (0.6, 0.6, 0.711), (0.3, 0.3, 0.7)])
 def test_ends_on_the_flat_and_at_its_corner_are_known(monkeypatch, share, end, other):
     """Little room is left beside the end of the stick zone there, so that small errors of the loads move it far."""
-    assert of_the_soft_end(monkeypatch, share, end, other) <= 1.0
+    monkeypatch.setattr(driver, "MESHES", driver.MESHES[:7])
+    scene = beside_the_flat(share, end, other)
+    result = partialslip.run(scene, "march")["march"]
+    assert result.m / result.a == pytest.approx(other, abs=result.estimate["m"])
+    assert result.n / result.a == pytest.approx(end, abs=result.estimate["n"])
 
 
-@pytest.mark.fault
-def test_ends_that_are_all_as_stiff_as_under_hertz_pressure_are_seen(monkeypatch):
-    """Deliberate fault: the estimate does not know how soft an end is."""
-    monkeypatch.setattr(marching, "_stiffness", lambda _: np.ones(2))
-    assert of_the_soft_end(monkeypatch, 0.6, 0.54, 0.669) > 2
-
-
-HALFWAY = {
+ACCURATE = {
     "constant P": partialslip.load_scene("flat-rounded"),
     "varying P": varying((0.8, 1.0), 1.2, 0.3, accuracy=5e-4),
 }
 
 
-@pytest.mark.parametrize("name", list(HALFWAY))
-def test_errors_that_are_nearly_small_enough_take_a_mesh_halfway(monkeypatch, name):
-    """It has little more than half of the cells of the next mesh, and errors are within estimates that are as small as
-    asked for."""
-    scene = HALFWAY[name]
+@pytest.mark.parametrize("name", list(ACCURATE))
+def test_errors_are_within_estimates_that_are_as_small_as_asked_for(name):
+    scene = ACCURATE[name]
     outcome = partialslip.run(scene, ["exact", "march"])
     comparison, result = outcome.comparisons["march"], outcome.results["march"]
     for key in ("m", "n", "q"):
         assert getattr(comparison, key) <= result.estimate[key] <= BARS[key] * scene.fem.accuracy
-    monkeypatch.setattr(marching.SimilarBodies, "nearly", (0.0, 0.0))
-    whole = partialslip.run(scene, ["march"]).results["march"]
-    assert whole.counts["meshes"] == result.counts["meshes"]
-    assert 0.5 < result.counts["cells"] / whole.counts["cells"] < 0.65
 
 
 def test_the_first_estimate_is_made_however_few_seconds_there_are():
     """Under a budget the stick zone out of phase was once that of two coarse meshes, without an estimate."""
     scene = partialslip.load_scene("fretting-aluminium", ["load.Q=[0, 3e4, 0, -3e4]", "load.sigma=[1e8, 0, -1e8, 0]"])
     hurried = partialslip.run(scene, "march", allowance=Allowance(0.0))["march"]
-    assert hurried.counts["meshes"] == 3
+    assert hurried.counts["meshes"] == 4
     true = partialslip.run(scene.replace(fem={"accuracy": 1e-4}), "march")["march"]
     for key in ("m", "n"):
         off = abs(getattr(hurried, key) - getattr(true, key)) / true.a

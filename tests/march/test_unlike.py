@@ -10,11 +10,11 @@ import partialslip
 from partialslip import load_scene, parse_scene
 from partialslip.friction import coulomb_coupled
 from partialslip.friction.even_gap import PARABOLA, EvenGap
-from partialslip.march import punch_growth, unlike
+from partialslip.march import driver, punch_growth, unlike
 from partialslip.march.punch_growth import PunchGrowth, goodman_stick_zone, relative
 from partialslip.march.unlike import dundurs
 from partialslip.result import Clock
-from partialslip.run.judge.means import norm_errors
+from partialslip.run.judge.measures import norm_errors
 from partialslip.scene.plan import plan
 
 STEEL = ("material.upper.E=210e9", "material.upper.nu=0.3", "load.cycles=2")
@@ -82,7 +82,7 @@ def moved_on(pressed_by=0.6):
     coarse = of_last.solve(None, (1e-2, 0.2))
     after = of_last.solve(coarse, (1e-3, 0.05))
     cells = after.vertices * last.length
-    before = unlike._solve_on(of_first, of_first.path, cells / first.length, None, Clock())
+    before = unlike._solve_on(of_first, of_first.path, cells / first.length, None)
     moved = []
     for scene, level in ((first, before), (last, after)):
         forces = (level.pressed.normal.x, level.pressed.tangential.x)
@@ -154,9 +154,9 @@ def test_compliance_of_unlike_half_planes_is_reciprocal():
 
 @pytest.fixture(autouse=True, scope="module")
 def coarse():
-    """Two meshes: what is tested does not need more."""
+    """Few meshes: what is tested does not need more."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(unlike, "_MESHES", unlike._MESHES[:2])
+        patch.setattr(driver, "MESHES", driver.MESHES[:5])
         yield
 
 

@@ -12,7 +12,7 @@ from partialslip.friction.load_path import Path, scaled_pressing, stretched
 from partialslip.friction.normal import Presses, press
 from partialslip.march.cells import compliance, graded_cells
 from partialslip.march.pressing import NormalLoads
-from partialslip.run.judge.verdict import Outcome
+from partialslip.run.judge.verdicts import Outcome
 
 A1, A2 = 0.8, 1.0
 P1, P2 = (math.pi * a**2 / 2 for a in (A1, A2))

@@ -1,7 +1,8 @@
-"""Decks of Abaqus that meshio reads as another mesh in silence, or of which it leaves out a part."""
+"""Decks of Abaqus and CalculiX: layouts that mean one mesh are read as one; what is not read is named."""
 
 import contextlib
 import re
+from dataclasses import replace
 
 import meshio
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from refusing import line_of
 
 from partialslip.tools.errors import InputError
-from partialslip_meshes import block, deck, read
+from partialslip_meshes import abaqus, block, read
 
 FIELD = "bodies.lower.mesh"
 
@@ -47,58 +48,166 @@ def between(text, *lines, after=100):
 
 
 def doubled(text, shift=0.05):
-    """The deck and a second part with the same numbers, its nodes farther down."""
+    """The deck as a part, and a second part with the same numbers, its nodes farther down."""
     moved = []
     for line in nodes(text):
         number, x, y, z = line.split(",")
         moved.append(f"{number},{x},{float(y) * (1 + shift)},{z}")
-    return text + "*END PART\n*PART, NAME=INSERT\n*NODE\n" + "\n".join(moved) + "\n*END PART\n"
+    cells = re.search(r"\*ELEMENT.*\n(?:[^*].*\n)*", text)[0]
+    other = "*NODE\n" + "\n".join(moved) + "\n" + cells
+    return f"*PART, NAME=FLAT\n{text}*END PART\n*PART, NAME=INSERT\n{other}*END PART\n"
 
 
+PLANE = "must have plane elements (CPE, CPS), not"
+SECOND = (
+    "must be one piece, connected by common nodes, not 2; if it has more bodies, type body = ..., one of FLAT, INSERT"
+)
 CASES = {
-    "a second part": (doubled, "must have one block *NODE, with the nodes of one body, not 2"),
-    "a reference node": (lambda text: text + "*NODE\n9001, 0, 9, 0\n", "must have one block *NODE"),
-    "nodes in two blocks": (lambda text: between(text, "*NODE, NSET=REST"), "must have one block *NODE"),
+    "a second body": (doubled, SECOND),
     "a node twice": (lambda text: between(text, nodes(text)[3]), "must have each node once; 1 are there again"),
     "a node elsewhere": (lambda text: between(text, "7, 0.1, -0.2, 0"), "must have each node once; 1 are there again"),
-    "a comment": (lambda text: between(text, "** more"), "no comment between the lines of *NODE"),
-    "a comment in a set": (
-        lambda text: re.sub(r"(\*NSET, NSET=contact\n.*\n)", r"\1** more\n", text),
-        "no comment between the lines of *NSET",
-    ),
     "made nodes": (lambda text: text.replace("*ELEMENT", "*NGEN\n1, 9\n*ELEMENT"), "*NGEN is not read"),
     "another system": (lambda text: text.replace("*NODE", "*System\n1, 1, 0\n*NODE"), "*SYSTEM is not read"),
     "polar nodes": (lambda text: text.replace("*NODE", "*NODE, SYSTEM=C"), "SYSTEM is not read"),
     "nodes in a file": (lambda text: text.replace("*NODE", "*NODE, INPUT=nodes.txt"), "INPUT is not read"),
-    "a shifted instance": (
-        lambda text: text + "*INSTANCE, NAME=one, PART=flat\n0.1, 0, 0\n*END INSTANCE\n",
-        "the shift of *INSTANCE is not read",
+    "a comma left out": (
+        lambda text: text.replace("*NSET, NSET=left", "*NSET NSET=left"),
+        "commas as in Abaqus; '*NSET N",
     ),
-    "a set twice": (lambda text: text + "*NSET, NSET=Contact\n1, 2\n", "the set 'contact' once; 2 *NSET"),
-    "a set of elements": (
-        lambda text: text + "*ELEMENT, TYPE=T2D2, ELSET=face\n9001, 1, 2\n",
-        "must have the set 'face' as *ELSET after the elements",
+    "an element twice": (lambda text: text + "*ELEMENT, TYPE=T2D2\n1, 1, 2\n", "must have each element once; 1 are"),
+    "solid elements": (lambda text: text.replace("R3D3", "C3D4"), f"{PLANE} C3D4"),
+    "axisymmetric elements": (lambda text: text.replace("R3D3", "CAX3"), f"{PLANE} CAX3"),
+    "nodes left out": (
+        lambda text: text.replace("R3D3", "CPE4"),
+        "must have a number and 4 nodes for each element CPE4",
     ),
-}  # fmt: skip
-
-
-def test_a_sound_deck_is_read(mesh, text, tmp_path):
-    assert deck.fault([text.encode()], ("contact", "back")) == ""
-    back = read(FIELD, at(tmp_path, "** first\n" + text.replace("\n", "\r\n") + "** last\n"))
-    assert np.array_equal(back.points, mesh.points)
-    assert len(back.lines["contact"]) == len(mesh.lines["contact"])
+    "a node that is none": (lambda text: text + "*NSET, NSET=Contact\n99999\n", "set 'contact' has the node 99999"),
+    "a set of itself": (lambda text: text + "*NSET, NSET=Contact\ncontact\n", "NSET 'contact' refers to itself"),
+    "a part that is none": (lambda text: f"{text}*INSTANCE, NAME=B, PART=C\n*END INSTANCE\n", "'C' is no *PART"),
+}
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_what_meshio_would_read_as_another_mesh_is_refused(text, tmp_path, case):
+def test_what_is_not_read_is_named(text, tmp_path, case):
     change, message = CASES[case]
     assert change(text) != text
     assert message in line_of(read, FIELD, at(tmp_path, change(text)))
 
 
+def test_a_sound_deck_is_read(mesh, text, tmp_path):
+    back = read(FIELD, at(tmp_path, "** first\n" + text.replace("\n", "\r\n") + "** last\n"))
+    assert np.array_equal(back.points, mesh.points)
+    assert len(back.lines["contact"]) == len(mesh.lines["contact"])
+
+
 def test_nodes_of_an_included_file_count(text, tmp_path):
     (tmp_path / "more.inp").write_text("*NODE\n1, 0, 0, 0\n")
-    assert "one block *NODE" in line_of(read, FIELD, at(tmp_path, f"*INCLUDE, INPUT=more.inp\n{text}"))
+    assert "must have each node once" in line_of(read, FIELD, at(tmp_path, f"*INCLUDE, INPUT=more.inp\n{text}"))
+
+
+def test_a_file_that_includes_itself_is_refused(text, tmp_path):
+    assert "must not include itself" in line_of(read, FIELD, at(tmp_path, f"*INCLUDE, INPUT=body.inp\n{text}"))
+
+
+def sets_as(text, **changes):
+    """The deck with other ``changes``: what replaces a group's set of nodes, by its name."""
+    for name, lines in changes.items():
+        text = re.sub(rf"\*NSET, NSET={name}\n(?:[^*].*\n)*", lines, text)
+    return text
+
+
+def members(text, name):
+    """Numbers of the nodes of a set."""
+    return [int(each) for each in re.findall(r"\d+", re.search(rf"\*NSET, NSET={name}\n((?:[^*].*\n)*)", text)[1])]
+
+
+def same(back, mesh):
+    """Whether the body is ``mesh``."""
+    edges = [
+        sorted(map(tuple, np.sort(pairs, axis=1).tolist())) for each in (back, mesh) for pairs in each.lines.values()
+    ]
+    return np.array_equal(back.points, mesh.points) and edges[: len(edges) // 2] == edges[len(edges) // 2 :]
+
+
+def faces(mesh, name):
+    """A surface by the sides of elements that make up a line."""
+    wanted = {tuple(pair) for pair in np.sort(mesh.lines[name], axis=1).tolist()}
+    found = {}
+    for number, corners in enumerate(mesh.triangles.tolist(), start=1):
+        for side in range(3):
+            if tuple(sorted((corners[side], corners[(side + 1) % 3]))) in wanted:
+                found.setdefault(side + 1, []).append(number)
+    numbers = {side: "".join(f"{each},\n" for each in those) for side, those in found.items()}
+    sets = "".join(f"*ELSET, ELSET=_{name}_S{side}\n{those}" for side, those in numbers.items())
+    return sets + f"*SURFACE, TYPE=ELEMENT, NAME={name}\n" + "".join(f"_{name}_S{side}, S{side}\n" for side in found)
+
+
+def listed(text, name):
+    """Members of a set of nodes, a line each."""
+    return ",\n".join(map(str, members(text, name))) + "\n"
+
+
+def layouts(mesh, text):
+    """Decks that mean the same body; of the last one it is the instance FLAT-1, 3 to the right."""
+    nodes_of_back, first = listed(text, "back"), members(text, "back")[0]
+    rest = ",\n".join(map(str, members(text, "back")[1:])) + "\n"
+    part = re.sub(r"\*NSET, NSET=back\n(?:[^*].*\n)*", "", text)
+    turn = "3., 0., 0., 3., 0., 1., 0."
+    return {
+        "comments between lines": between(text, "** more"),
+        "nodes in two blocks": between(text, "*Node, nset=REST"),
+        "a reference node": text + "*NODE\n9001, 0, 9, 0\n*NSET, NSET=REF\n9001\n",
+        "a spring": text + "*ELEMENT, TYPE=SPRINGA, ELSET=SPRINGS\n9001, 1, 2\n",
+        "quoted and lower-case names": text.replace("*NSET, NSET=contact", '*nset , nset = "Contact"'),
+        "a set of sets": sets_as(text, back=f"*NSET, NSET=other\n{nodes_of_back}*NSET, NSET=Back\nOTHER\n"),
+        "a set in two cards": sets_as(text, back=f"*NSET, NSET=back\n{first}\n*NSET, NSET=BACK\n{rest}"),
+        "surfaces of sides": sets_as(text, contact=faces(mesh, "contact"), back=faces(mesh, "back")),
+        "a surface of nodes": sets_as(
+            text, back=f"*NSET, NSET=b\n{nodes_of_back}*SURFACE, TYPE=NODE, NAME=BACK\nb, 1.\n"
+        ),
+        "instances": f"*PART, NAME=FLAT\n{part}*END PART\n*ASSEMBLY, NAME=A\n"
+        f"*INSTANCE, NAME=FLAT-1, PART=FLAT\n3., 0.\n{turn}\n*END INSTANCE\n"
+        "*INSTANCE, NAME=FLAT-2, PART=FLAT\n0., 9.\n*END INSTANCE\n"
+        f"*NSET, NSET=BACK, INSTANCE=FLAT-1\n{nodes_of_back}*NODE\n1, 0, 20\n*END ASSEMBLY\n",
+    }
+
+
+LAYOUTS = (
+    "comments between lines", "nodes in two blocks", "a reference node", "a spring", "quoted and lower-case names",
+    "a set of sets", "a set in two cards", "surfaces of sides", "a surface of nodes", "instances",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_layouts_of_decks_make_no_difference(mesh, text, tmp_path, layout):
+    made = layouts(mesh, text)
+    assert tuple(made) == LAYOUTS
+    placed = layout == "instances"
+    back = read(FIELD, at(tmp_path, made[layout]), body="flat-1" if placed else None)
+    assert made[layout] != text
+    assert np.abs(back.points - [3 * placed, 0] - mesh.points).max() <= 1e-15 * placed * 4
+    assert same(replace(back, points=mesh.points), mesh)
+
+
+@pytest.mark.parametrize("kind", ["CPE3", "cps3", "CPE3H", "CPS3T", "S3R"])
+def test_types_of_plane_elements(mesh, text, tmp_path, kind):
+    assert same(read(FIELD, at(tmp_path, text.replace("R3D3", kind))), mesh)
+
+
+def test_groups_have_the_names_that_the_file_gives_them(mesh, text, tmp_path):
+    renamed = text.replace("NSET=contact", "NSET=SLAVE")
+    assert same(read(FIELD, at(tmp_path, renamed), groups={"contact": "Slave"}), mesh)
+    told = line_of(read, FIELD, at(tmp_path, renamed))
+    assert "must have a group 'contact' of edges or nodes of its boundary; the file has SLAVE, face, back" in told
+    told = line_of(read, FIELD, at(tmp_path, renamed), groups={"contact": "MASTER"})
+    assert "must have the group 'MASTER' of edges or nodes for 'contact'; the file has SLAVE" in told
+
+
+def test_one_of_two_bodies_is_chosen(mesh, text, tmp_path):
+    assert same(read(FIELD, at(tmp_path, doubled(text)), body="flat"), mesh)
+    assert "elements of the body 'PAD'; the file has FLAT, INSERT" in line_of(
+        read, FIELD, at(tmp_path, doubled(text)), body="PAD"
+    )
 
 
 def test_two_meshes_in_one_file_of_gmsh_are_refused(mesh, tmp_path):
@@ -110,11 +219,11 @@ def test_two_meshes_in_one_file_of_gmsh_are_refused(mesh, tmp_path):
 
 
 @pytest.mark.fault
-def test_a_second_part_that_is_not_seen(mesh, text, tmp_path, monkeypatch):
-    """Without the check the nodes of the second part replace those of the first: the body is 5 % higher."""
-    monkeypatch.setattr(deck, "fault", lambda *_: "")
-    back = read(FIELD, at(tmp_path, doubled(text)))
-    assert np.ptp(back.points[:, 1]) == pytest.approx(1.05 * np.ptp(mesh.points[:, 1]), rel=1e-9)
+def test_numbers_of_two_parts_taken_for_one(text, tmp_path, monkeypatch):
+    """Scopes left out: the nodes of the second part stand in for those of the first, and the deck is refused."""
+    kept = abaqus._cards
+    monkeypatch.setattr(abaqus, "_cards", lambda text: (card for card in kept(text) if "PART" not in card.keyword))
+    assert "must have each node once" in line_of(read, FIELD, at(tmp_path, doubled(text)), body="flat")
 
 
 @pytest.mark.parametrize("lines", [

@@ -1,7 +1,6 @@
 """The process that makes meshes: whoever calls, whatever else has gmsh open, and however the process or its parent
 ends."""
 
-import asyncio
 import multiprocessing
 import os
 import signal
@@ -109,13 +108,6 @@ def test_one_process_for_all_meshes(expected):
 def test_threads_share_it(expected):
     with ThreadPoolExecutor(8) as pool:
         assert all(same(mesh, expected) for mesh in pool.map(lambda _: block(*OUTLINE), range(24)))
-
-
-def test_from_a_notebook(expected):
-    async def cells():
-        return await asyncio.gather(*(asyncio.to_thread(block, *OUTLINE) for _ in range(4)))
-
-    assert all(same(mesh, expected) for mesh in asyncio.run(cells()))
 
 
 def test_an_open_session_is_left_alone(expected):
@@ -263,21 +255,6 @@ def test_replaced_once(expected):
         block(*OUTLINE)
     assert "\n" not in str(error.value)
     assert same(block(*OUTLINE), expected)
-
-
-@posix
-def test_killed_between_meshes(expected):
-    block(*OUTLINE)
-    os.kill(pid(), signal.SIGKILL)
-    assert same(block(*OUTLINE), expected)
-
-
-@posix
-def test_killed_twice_is_one_line(refused, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    with killed(2):
-        said = refused("run", "hertz-shear", "--with", "fem", "--set", "fem.size=0.5")
-    assert said == "partialslip: the gmsh process died twice (signal 9); is there enough memory?\n"
 
 
 @posix

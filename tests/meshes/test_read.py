@@ -257,28 +257,6 @@ def test_all_spoilt_meshes_are_tried(mesh):
     assert len(list(spoilt(mesh))) == COUNT
 
 
-@pytest.mark.parametrize(("way", "suffix"), WAYS)
-def test_damaged_files_are_refused_or_whole(write, capfd, way, suffix):
-    """Cut short anywhere, or with some bytes changed: one line, nothing on the terminal, or a mesh."""
-    path = write(way, suffix)
-    with open(path, "rb") as file:
-        whole = file.read()
-    rng, refused = np.random.default_rng(1), []
-    for place in rng.integers(0, len(whole), 12):
-        changed = bytearray(whole)
-        changed[place : place + 3] = rng.bytes(3)
-        for content in (whole[:place], bytes(changed)):
-            with open(path, "wb") as file:
-                file.write(content)
-            try:
-                read(FIELD, path)
-            except InputError as error:
-                refused.append(str(error))
-    assert len(refused) >= 12
-    assert not [line for line in refused if "\n" in line]
-    assert capfd.readouterr() == ("", "")
-
-
 @pytest.mark.parametrize(
     ("path", "why"),
     [

@@ -20,7 +20,7 @@ from partialslip.report.page import Section, run_page, study_page
 from partialslip.report.sketch import sketch_svg
 from partialslip.run import compared
 from partialslip.scene.plan import plan
-from partialslip.study.cost import ladder
+from partialslip.study import cost
 from partialslip.tools.errors import MissingLibraryError
 from partialslip.tools.origin import made_now, origin_lines
 from partialslip.tools.output.svg import svg, with_dark_mode
@@ -180,13 +180,13 @@ def test_a_narrow_figure_of_a_study_stays_narrow():
 def test_a_study_of_cost_writes_its_page(tmp_path, monkeypatch):
     def point(series, error, cpu_s, **counts):
         errors = dict.fromkeys("amnpq", error)
-        return ladder.CostPoint(
+        return cost.CostPoint(
             series, f"{error:g}", errors, cpu_s, cpu_s + 1, 0.1, cpu_s, 100.0, {"mesh": cpu_s}, counts
         )
 
     found = [point("exact", 1e-15, 0.1)]
     found += [point("P4, adapted", 10.0**-k, float(k), dofs=1000 * k) for k in (2, 3, 4)]
-    monkeypatch.setattr(ladder, "measure_costs", lambda *_: ladder.MeasuredCosts(found, []))
+    monkeypatch.setattr(cost, "measure_costs", lambda *_: cost.MeasuredCosts(found, []))
     assert main(["study", "cost", "hertz-shear", "--set", "friction.f=0.4", "--out", str(tmp_path)]) == 0
     page = (tmp_path / "report.html").read_text("utf-8")
     assert page.count("<svg") == 3  # costs, phases, sketch

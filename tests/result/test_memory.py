@@ -9,7 +9,8 @@ import pytest
 
 import partialslip
 from partialslip.report import rows
-from partialslip.result import Clock, memory
+from partialslip.result import Clock
+from partialslip.result import cost as memory
 
 MB = 2**20
 ROOT = Path(__file__).parents[2]
@@ -23,7 +24,8 @@ def need(size_mb):
 
 ALONE = """
 from tests.result.test_memory import need
-from partialslip.result import Clock, memory
+from partialslip.result import Clock
+from partialslip.result import cost as memory
 need(160)
 clock = Clock()
 need(40)

@@ -8,7 +8,7 @@ import pytest
 
 import partialslip
 from partialslip import halfplane
-from partialslip.tools.methods import METHODS
+from partialslip.run.methods import METHODS
 
 SCENE = partialslip.load_scene("fretting-aluminium")
 

@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PPoly
 
-import partialslip
 from partialslip import InputError, load_scene, load_state, run
-from partialslip.cli import main
 from partialslip.march import driver as marching
 from partialslip.run.judge.measures import measures
 
@@ -131,41 +129,6 @@ def test_another_load_or_material_is_refused():
     harder = load_scene("fretting-aluminium", [f"load.P={P}", "load.Q=[-1e4, 1e4]", "material.E=73e9"])
     with pytest.raises(InputError, match=r"^state: is of A = "):
         run(harder, ["march"], start=start)
-
-
-def test_on_the_command_line(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    common = [
-        "run",
-        "hertz-large-tension",
-        "--with",
-        "march",
-        "--set",
-        "load.Q=[31415.9, 219911.5]",
-        "--accuracy",
-        "1e-3",
-    ]
-    assert main([*common, "--save", "half.npz"]) == 0
-    assert "half.npz" in capsys.readouterr().out
-    assert main([*common, "--start", "half.npz", "--out", "rest"]) == 0
-    assert (tmp_path / "rest" / "results.json").exists()
-
-
-@pytest.mark.parametrize("content", [b"", b"PK", b"not a state", None])
-def test_broken_files(tmp_path, refused, content):
-    path = tmp_path / "broken.npz"
-    if content is None:
-        np.savez(path, loads=np.ones(4), cells=np.array([0.0, 1.0]), p=np.ones((1, 3)), q=np.ones((1, 1)))
-    else:
-        path.write_bytes(content)
-    with pytest.raises(InputError, match="not a state that partialslip has saved"):
-        load_state(path)
-    refused("run", "hertz-shear", "--with", "march", "--start", str(path))
-
-
-def test_missing_file(tmp_path):
-    with pytest.raises(InputError, match="cannot be read"):
-        partialslip.load_state(tmp_path / "none.npz")
 
 
 @pytest.mark.slow

@@ -157,7 +157,7 @@ def test_rigs_without_a_checksum_are_read(file, tmp_path):
 def test_rigs_are_found_beside_the_scene(file, tmp_path, monkeypatch):
     (tmp_path / "scenes").mkdir()
     shutil.copy(file, tmp_path / "scenes" / "rig.json")
-    from partialslip.scene.writing import scene_toml
+    from partialslip.scene.reading import scene_toml
 
     text = scene_toml(scene_of()) + '\n[bodies]\nequivalent = "rig.json"\n'
     text = text.replace("\n[bodies]\n", "\n[bodies]\n", 1)

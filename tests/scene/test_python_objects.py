@@ -23,7 +23,7 @@ from partialslip.scene import (
     Scene,
     Tabulated,
 )
-from partialslip.scene.writing import scene_toml
+from partialslip.scene.reading import scene_toml
 
 SHIPPED = partialslip.load_scene("fretting-aluminium")
 
@@ -67,19 +67,13 @@ def test_arrays_lists_and_tuples_make_equal_tables():
     ("table", "key", "value", "written"),
     [
         ("load", "P", -1, "-1"),
-        ("load", "P", "much", "'much'"),
-        ("load", "Q", 5.0, "5.0"),
         ("load", "Q", [1.0], "[1.0]"),
         ("load", "Q", [1.0, np.nan], "[1.0, nan]"),
         ("load", "cycles", 1.5, "1.5"),
         ("load", "R", 1.0, "1.0"),
-        ("friction", "f", np.float64(-0.1), "-0.1"),
         ("friction", "f", np.inf, "inf"),
-        ("material", "nu", 0.5, "0.5"),
         ("material", "E", 1e300, "1e300"),
         ("material", "plane", "flat", "'flat'"),
-        ("profile", "R", [], "[]"),
-        ("fem", "order", 5, "5"),
         ("effects", "shear", 1, "1"),
     ],
 )

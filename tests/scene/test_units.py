@@ -19,10 +19,9 @@ from partialslip.result.fields import SurfaceStress
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.profiles import FlatRounded, Hertz, Tabulated
-from partialslip.scene.reading import load_scene, parse_scene, shipped_scenes
+from partialslip.scene.reading import load_scene, parse_scene, scene_tables, scene_toml, shipped_scenes
 from partialslip.scene.table import Table
 from partialslip.scene.units import N_MM, N_NM, N_UM, SI
-from partialslip.scene.writing import scene_tables, scene_toml
 from partialslip.study.batch.ledger import scene_content
 from partialslip.tools.errors import InputError
 

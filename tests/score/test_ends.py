@@ -9,7 +9,7 @@ import spoiling
 from partialslip import load_scene, score
 from partialslip.codes.score.kinds import EVERY, RUNNING, Average
 from partialslip.codes.score.samples import samples
-from partialslip.run.judge.means import cell_means, means
+from partialslip.run.judge.measures import cell_means, means
 
 ends = importlib.import_module("partialslip.codes.score.ends")
 method = importlib.import_module("partialslip.codes.score.method")

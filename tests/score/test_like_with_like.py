@@ -10,8 +10,8 @@ import pytest
 from partialslip import load_scene, run, score
 from partialslip.report.files import tractions_csv
 from partialslip.report.record import record
-from partialslip.run.judge import Outcome, verdict
-from partialslip.run.judge.verdict import judged
+from partialslip.run.judge import Outcome, verdicts
+from partialslip.run.judge.verdicts import judged
 from partialslip.tools.errors import InputError
 
 SCENE = load_scene("fretting-aluminium")
@@ -124,7 +124,7 @@ def test_what_the_table_cannot_tell_is_not_judged(tmp_path, monkeypatch):
     data = record(score(SCENE, path, bar=1e-3))  # and so it is found from the file of results
     (again,) = (each for each in data.comparison["t.csv"].verdicts if each.quantity == "a")
     assert again.outcome is Outcome.NOT_JUDGED
-    monkeypatch.setattr(verdict, "read_to", lambda *_: 0.0)
+    monkeypatch.setattr(verdicts, "read_to", lambda *_: 0.0)
     (a,) = (each for each in compared(SCENE, path, bar=1e-3)[1].verdicts if each.quantity == "a")
     assert a.outcome is not Outcome.NOT_JUDGED
 

@@ -2,6 +2,7 @@
 
 import importlib
 
+import numpy as np
 import pytest
 import spoiling
 
@@ -52,12 +53,13 @@ def test_all_spoiled_tables(name, sampling):
     other two scenes have the tractions of one of these, with other loads.
 
     No table tells a shift of x by less than the ends of p are known to: behind the corner of a flat punch, where three
-    points of 151 lie, a thousandth of a. m and n are then off by the shift, and by no more."""
+    points of 151 lie, a thousandth of a. m and n are then off by the shift, beside their own errors."""
     read = list(spoiling.readings(load_scene(name), sampling))
     print(*spoiling.counts(read), sep="\n")
     wrong = [reading for reading in read if not reading.honest]
     shifted = [reading for reading in wrong if reading.way == "x shifted"]
-    assert all(max(reading.errors) < float(reading.size) + 0.01 * reading.spacing for reading in shifted)
+    for reading in shifted:
+        assert all(np.subtract(reading.errors, float(reading.size)) <= 3 * np.array(reading.estimates))
     assert all(float(reading.size) <= 1e-3 for reading in shifted)
     assert not any(reading.way == "penalty friction" for reading in wrong)
     others = [reading for reading in wrong if reading not in shifted]

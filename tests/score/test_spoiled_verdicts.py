@@ -253,9 +253,9 @@ def test_the_command_says_so(tmp_path, capsys, refused, monkeypatch):
 @pytest.mark.fault
 def test_a_rule_that_any_pass_passes_lets_them_through(tmp_path, monkeypatch):
     """Deliberate fault: a pass in anything passes all, as it was. A table without a stick zone then passes."""
-    from partialslip.run.judge import outcome
+    from partialslip.run.judge import verdicts
 
     path = write(tmp_path, in_proportion("not followed"))
     assert score(SCENES["not followed"], path, bar=1e-2).outcome is Outcome.NOT_JUDGED
-    monkeypatch.setattr(outcome, "headline", lambda _: ())
+    monkeypatch.setattr(verdicts, "headline", lambda _: ())
     assert score(SCENES["not followed"], path, bar=1e-2).outcome is Outcome.PASSED

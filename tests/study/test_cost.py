@@ -8,13 +8,12 @@ import pytest
 from outline import texts
 
 import partialslip
-from partialslip.cli import main
 from partialslip.cli.cost import _answer, _left_out, _progress
+from partialslip.study import cost
 from partialslip.study.batch.job import Job, ProcessCost, solve_apart
 from partialslip.study.batch.job import _known as known
 from partialslip.study.batch.ledger import Ledger
-from partialslip.study.cost import ladder as cost
-from partialslip.study.cost.figure import errors_svg, phases_svg
+from partialslip.study.cost import errors_svg, phases_svg
 
 SCENE = partialslip.load_scene("hertz-large-tension")
 
@@ -182,23 +181,3 @@ def test_a_peer_is_met_at_its_best_error_and_in_its_time():
     found = cost.against(ours, [point("peer", 20.0, 1e-3), point("peer", 50.0, 1e-5)], "m")
     assert found == pytest.approx({"error": 1e-5, "cpu": 1 / 50, "process": 1 / 50, "error at its cpu": 0.1})
     assert math.isnan(cost.against(ours[:1], [point("peer", 0.01, 1e-5)], "m")["cpu"])
-
-
-@pytest.mark.parametrize(
-    ("line", "told"),
-    [
-        ("{}", "scene: missing"),
-        ("[]", "must be an object, not an array"),
-        ("no", "not JSON"),
-        ('{"scene": "hertz-large-tension", "method": "x"}', "setting: missing"),
-        ('{"scene": 3}', "scene: must be a string, not a whole number"),
-    ],
-)
-def test_what_is_no_peers_result_is_refused(tmp_path, capsys, line, told):
-    (tmp_path / "peers.jsonl").write_text(line + "\n", "utf-8")
-    arguments = ["study", "cost", "hertz-large-tension", "--peers", str(tmp_path / "peers.jsonl")]
-    assert main([*arguments, "--out", str(tmp_path / "out")]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert told in said
-    assert not (tmp_path / "out").exists()

@@ -2,10 +2,7 @@
 and missing effects are reported."""
 
 import functools
-import itertools
 import json
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -278,29 +275,6 @@ def test_opposing_slip_is_left_out_where_tension_is_small(Qf):
     assert P > 0
 
 
-REFUSED = {
-    "effects.normal=false": "without pressure there is no contact; must be true",
-    "effects.friction=true friction.f=0.01": "the contact slides",
-    "effects.friction=true friction.f=0": "f = 0",
-    "effects.opposing-slip=false load.sigma=[-3e8,3e8]": "large tension",
-    "effects.history=false load.sigma=[0,1e8,0] load.Q=[0,1e4,1e4]": "out of phase",
-    "effects.history=false material.upper.E=400e9 material.upper.nu=0.3 load.Q=[-1e5,1e5]": "depends on the path",
-    "effects.finite-size=true": "have no size; must be false",
-    "effects.far-field=true " + " ".join(BLOCKS): "no half-plane around them",
-    "effects.frction=true": "did you mean 'friction'?",
-    "effects.opposing_slip=true": "did you mean 'opposing-slip'?",
-    "effects.friction=1": "must be true or false, not a whole number",
-}
-
-
-@pytest.mark.parametrize("settings", REFUSED)
-def test_what_cannot_be_forced_is_refused_in_one_line(settings, refused, tmp_path):
-    overrides = [part for setting in settings.split(" ") for part in ("--set", setting)]
-    line = refused("run", "hertz-shear", "--with", "fem", "--set", SIZE, *overrides, "--out", str(tmp_path))
-    assert REFUSED[settings] in line
-    assert "effects" in line
-
-
 def test_what_is_called_for_may_be_forced_on():
     """Shear that makes the contact slide is called for, though friction is not."""
     scene = load_scene("hertz-shear", ["friction.f=0.01", "effects.shear=true", "effects.normal=true"])
@@ -346,52 +320,12 @@ def test_coupling_left_out_is_the_uncoupled_solution():
     assert without.traction.q1 == pytest.approx(-without.traction.q2, abs=1e-12 * unlike.p0)
 
 
-def imported(code):
-    """Which of the heavy packages a piece of code has imported."""
-    names = ("gmsh", "meshio", "skfem", "matplotlib", "jinja2", "rich", "cvxopt")
-    code += f"\nimport sys\nprint([name for name in {names!r} if name in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    return set(json.loads(done.stdout.strip().splitlines()[-1].replace("'", '"')))
-
-
-@pytest.mark.slow
-def test_imports_are_those_of_what_is_built(tmp_path):
-    run = "import partialslip as p; s = p.load_scene('hertz-shear', ['fem.size=0.2', 'fem.factor=superlu']); "
-    assert imported(run + "p.run(s, ['exact', 'march'])") == set()
-    assert imported(run + "p.run(s, ['fem'])") == {"skfem"}  # gmsh runs in a separate process
-    mesh = tmp_path / "mesh.npz"
-    made = bodies.block(16.0, (-1.5, 1.5), {0.0: 0.2}, 0.5)
-    np.savez(mesh, points=made.points, triangles=made.triangles, **made.lines)
-    given = (
-        f"file = __import__('numpy').load({str(mesh)!r}); names = set(file) - {{'points', 'triangles'}}\n"
-        "from partialslip_meshes import Mesh; from partialslip_fem import problem, solving\n"
-        "from partialslip.result import Clock\n"
-        "mesh = Mesh(file['points'], file['triangles'], {n: file[n] for n in names})\n"
-        "solving.solve_on_meshes([mesh], problem.scaled(s, p.plan(s)), 16.0, Clock())"
-    )
-    assert imported(run + given) == {"skfem"}
-
-
 def test_a_kept_mesh_is_not_made_again(monkeypatch):
     keep = Kept()
     first, other = load_scene("hertz-shear", [SIZE]), load_scene("hertz-shear", [SIZE, "load.Q=[-1e5, 1e5]"])
     fem_method.solve(first, plan(first), keep=keep)
     monkeypatch.setattr(bodies, "block", None)
     assert fem_method.solve(other, plan(other), keep=keep).counts["factorizations"] == 0
-
-
-@pytest.mark.parametrize("scene", ["hertz-shear", "fretting-aluminium", "flat-rounded"])
-def test_every_effect_is_on_or_off_for_a_reason(scene):
-    for choices in itertools.product((None, True, False), repeat=2):
-        settings = [
-            f"effects.{effect}={str(choice).lower()}"
-            for effect, choice in zip(("tension", "history"), choices, strict=True)
-            if choice is not None
-        ]
-        effects = plan(load_scene(scene, settings))
-        for effect, choice in zip(("tension", "history"), choices, strict=True):
-            assert choice is None or effects.needs(effect) == choice
-        assert all(why.strip() for why in (effects.called_for | effects.left_out).values())
 
 
 @pytest.mark.slow

@@ -15,25 +15,6 @@ def changes_of(values):
     return np.abs(np.diff(values)).tolist()
 
 
-@pytest.mark.parametrize("order", [0.5, 0.8, 1.0])
-def test_order_and_index_of_a_power_law(order):
-    """f(h) = 1 + C h^p: the order is p, and the index is the error times the safety factor."""
-    values = 1 + 0.3 * np.array(SIZES) ** order
-    found = convergence("a", changes_of(values), values[-1] - 1)
-    assert found.order == pytest.approx(order, abs=1e-9)
-    assert found.gci == pytest.approx(1.25 * found.error, rel=1e-9)
-
-
-@pytest.mark.parametrize("order", [0.2, 2.0, 4.0])
-def test_an_order_beyond_the_usual_has_the_larger_safety_factor(order):
-    values = 1 + 0.3 * np.array(SIZES) ** order
-    found = convergence("a", changes_of(values), values[-1] - 1)
-    assert found.order == pytest.approx(order, abs=1e-9)
-    used = min(max(order, 0.5), 1.0)
-    assert found.gci >= 3 * found.changes[-1] / (2**used - 1) * (1 - 1e-12)
-    assert found.gci > found.error or order < 0.5
-
-
 @pytest.mark.fault
 def test_a_lucky_last_change_does_not_shrink_the_index():
     """Deliberate fault: errors jump by the element, and the last two meshes agree by chance. The index of the last

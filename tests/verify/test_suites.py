@@ -7,7 +7,6 @@ import pytest
 from refusing import line_of
 
 from partialslip import InputError, shipped_scenes
-from partialslip.verify.benchmark import read_problems
 from partialslip.verify.hard_cases.catalogue import hard_cases
 from partialslip.verify.random_scenes import kind_of
 from partialslip.verify.suites import stress_numbers, stress_suite, suite
@@ -59,17 +58,3 @@ def test_the_exact_method_is_not_for_loads_out_of_phase():
     exact = list(itertools.takewhile(lambda number: number < 50, stress_numbers("exact")))
     assert exact == [number for number in every if kind_of(number) != "out of phase"]
     assert 0 < len(exact) < 50
-
-
-@pytest.mark.slow
-def test_the_book_is_a_suite_of_the_benchmarks_own_scenes():
-    problems = read_problems()
-    makers = suite("book")
-    assert list(makers) == list(problems)
-    for number, make in makers.items():
-        case = make()
-        accuracy = {"accuracy": case.scene.fem.accuracy}
-        assert case.scene == problems[number].scene.replace(fem=accuracy)
-        assert case.reference in (*case.methods, "")
-        assert len(case.methods) > 1
-    assert list(suite("book", ["PS-0?"])) == [number for number in problems if number < "PS-10"]

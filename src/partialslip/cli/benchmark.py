@@ -209,7 +209,7 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> in
     """Print the grades of a submission, with the target that decides. Returns the exit code: 4 if an answer lacks a
     headline target."""
     from partialslip.cli.consoles import output
-    from partialslip.run.judge.outcome import UNJUDGED
+    from partialslip.run.judge.verdicts import UNJUDGED
     from partialslip.tools.output.tables import print_table
     from partialslip.verify.benchmark.grade import NOT_GRADED, NOT_OFFERED
     from partialslip.verify.benchmark.measured import GROUPS

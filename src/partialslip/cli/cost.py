@@ -22,7 +22,7 @@ from partialslip.cli.findings import Findings, present
 from partialslip.tools.errors import InputError
 
 if TYPE_CHECKING:
-    from partialslip.study.cost.ladder import CostPoint, MeasuredCosts
+    from partialslip.study.cost import CostPoint, MeasuredCosts
 
 
 def add(topics: Commands) -> None:
@@ -66,10 +66,10 @@ def _cost(options: argparse.Namespace) -> int:
     name = f"{scene.name}-cost"
 
     from partialslip.cli.consoles import working
-    from partialslip.study.cost import ladder
+    from partialslip.study import cost
 
-    methods = methods_of(options.methods, ladder.LADDERS)
-    peers = ladder.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
+    methods = methods_of(options.methods, cost.LADDERS)
+    peers = cost.read_peers(Path(options.peers), scene.name) if options.peers is not None else []
     known = {
         "peers": options.peers and Path(options.peers),
         "methods": sorted({*methods}),
@@ -78,12 +78,12 @@ def _cost(options: argparse.Namespace) -> int:
     }
 
     def usual() -> dict[str, object]:
-        return {"methods": sorted(ladder.LADDERS), "budget": str(seconds(options.default("budget"))), "every": False}
+        return {"methods": sorted(cost.LADDERS), "budget": str(seconds(options.default("budget"))), "every": False}
 
     def find(folder: Path) -> Findings:
         ledger = study_ledger(folder)
         with working(name) as tell:
-            measured = ladder.measure_costs(
+            measured = cost.measure_costs(
                 scene, ledger, options.repeats, lambda *state: tell(_progress(*state)), methods, budget, options.every
             )
         return _evaluated(options, scene, measured, peers, ledger.path)
@@ -100,23 +100,22 @@ def _evaluated(
 ) -> Findings:
     """Draw, write and tabulate what was ``measured`` of ``scene``."""
     from partialslip.report.page import Section
-    from partialslip.study.cost import ladder
-    from partialslip.study.cost.figure import errors_svg, phases_svg
+    from partialslip.study import cost
     from partialslip.tools.output.files import csv_text, write_texts
 
     found, name = measured.points, scene.name
-    phases = phases_svg(found, f"{name}: where the time goes")
+    phases = cost.phases_svg(found, f"{name}: where the time goes")
     texts = {
-        "cost.csv": csv_text(*ladder.cost_table([*found, *peers])),
-        "cost.svg": errors_svg(found, peers, f"{name}: what accuracy costs", scene.fem.accuracy),
+        "cost.csv": csv_text(*cost.cost_table([*found, *peers])),
+        "cost.svg": cost.errors_svg(found, peers, f"{name}: what accuracy costs", scene.fem.accuracy),
     } | ({"phases.svg": phases} if phases else {})
-    front = ladder.front(found)
+    front = cost.front(found)
     best = {id(point) for point in front}
     head = ["series (* on the front)", "setting", "m, in a", "n, in a", "q, norm", "unknowns", "CPU s", "process"]
     rows = [_row(point, id(point) in best) for point in [*found, *peers]]
     slopes = [
         [each, *(_number(value, ".2f") for value in of.values())]
-        for each, of in ladder.slopes(found).items()
+        for each, of in cost.slopes(found).items()
         if not math.isnan(of["CPU"])
     ]
     exponents = ["exponent against unknowns", "m, n", "q", "CPU"]
@@ -138,7 +137,7 @@ def _evaluated(
             f"{beaten} other settings cost more for the error: --verbose, or cost.csv",
         ]
     files = [ledger, *write_texts(ledger.parent, texts)]
-    return Findings(files, heading, [*answer, ladder.SETTING, *tables, *against], heading, sections)
+    return Findings(files, heading, [*answer, cost.SETTING, *tables, *against], heading, sections)
 
 
 def _answer(front: "list[CostPoint]", asked: float) -> list[str]:
@@ -156,7 +155,7 @@ def _answer(front: "list[CostPoint]", asked: float) -> list[str]:
 
 def _left_out(measured: "MeasuredCosts", budget: str) -> str:
     """Return which settings were left out, and why, as one line."""
-    from partialslip.study.cost.ladder import setting_name
+    from partialslip.study.cost import setting_name
 
     first = {case.labels["series"]: setting_name(case) for case in reversed(measured.left)}
     where = "; ".join(f"{name} on" for name in reversed(first.values()))
@@ -183,7 +182,7 @@ def _number(value: float, form: str) -> str:
 
 def _against(found: "list[CostPoint]", peers: "list[CostPoint]") -> list[str]:
     """Return lines that compare the finite elements of partialslip with each peer."""
-    from partialslip.study.cost.ladder import against
+    from partialslip.study.cost import against
 
     ours = [point for point in found if point.series.startswith("fem")]
     lines = []

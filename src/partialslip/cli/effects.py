@@ -32,25 +32,24 @@ def _effects(options: argparse.Namespace) -> int:
 
     from partialslip.cli.consoles import working
     from partialslip.report.page import Section
-    from partialslip.study.effects import worth
-    from partialslip.study.effects.figure import effects_svg
+    from partialslip.study import effects
     from partialslip.tools.output.files import json_text, write_texts
 
     def find(folder: Path) -> Findings:
         with working(name) as tell:
-            study = worth.study_effects(scene, tell)
+            study = effects.study_effects(scene, tell)
             texts = {
-                "effects.json": json_text(worth.effects_record(study)),
-                "effects.csv": worth.effects_csv(study),
-                "effects.svg": effects_svg(study),
+                "effects.json": json_text(effects.effects_record(study)),
+                "effects.csv": effects.effects_csv(study),
+                "effects.svg": effects.effects_svg(study),
             }
             files = write_texts(folder, texts)
         printed: list[str | Section] = [
-            Section("", (), "", "", *worth.changes_table(study), (1,)),
-            Section("", (), "", "", *worth.costs_table(study)),
-            *worth.refusals(study),
+            Section("", (), "", "", *effects.changes_table(study), (1,)),
+            Section("", (), "", "", *effects.costs_table(study)),
+            *effects.refusals(study),
         ]
-        sections = worth.effects_sections(study, texts["effects.svg"])
-        return Findings(files, worth.effects_heading(study), printed, f"{scene.name}: effects", sections)
+        sections = effects.effects_sections(study, texts["effects.svg"])
+        return Findings(files, effects.effects_heading(study), printed, f"{scene.name}: effects", sections)
 
     return present(options, "study effects", name, scene, find)

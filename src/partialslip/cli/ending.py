@@ -1,7 +1,7 @@
 """End of a command: turn every exception into one line on stderr and an exit code.
 
 Exit codes: 0 success; 1 a bar missed, or a case not solved; 2 bad input, or output that cannot be written; 3 a fault of
-partialslip; 4 bars asked for, but headline quantities not judged (:mod:`partialslip.run.judge.outcome`); 128 + signal
+partialslip; 4 bars asked for, but headline quantities not judged (:mod:`partialslip.run.judge.verdicts`); 128 + signal
 number if ended by a signal: 129 (terminal closed), 130 (Ctrl-C), 141 (reader of the output closed) and 143
 (terminated).
 """

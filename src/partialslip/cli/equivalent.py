@@ -44,7 +44,7 @@ def _equivalent(options: argparse.Namespace) -> int:
     from partialslip.march.equivalent import in_words, shares, stand_ins
     from partialslip.result.rig import write_rig
     from partialslip.run import rig_of
-    from partialslip.scene.writing import scene_toml
+    from partialslip.scene.reading import scene_toml
     from partialslip.tools.output.files import write_files
 
     with working(scene.name) as tell, naming(options.scene):

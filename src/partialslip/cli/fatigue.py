@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import partialslip
 from partialslip.cli.common import Commands, add_method, add_out, add_pdf, add_scene, check_output, naming
 from partialslip.cli.findings import Findings, present
+from partialslip.run.methods import REFERENCES
 from partialslip.tools.errors import InputError
-from partialslip.tools.methods import REFERENCES
 
 if TYPE_CHECKING:
     from partialslip.report.page import Section

@@ -16,7 +16,7 @@ def add(commands: Commands) -> None:
         "page",
         help="make a live page: sliders for loads and friction",
         description="Make one HTML file with sliders for the loads and the friction. The page shows tractions, stick "
-        "zone and the point on the stick-zone map. P and its line of action may differ between the load points. The "
+        "zone and the point on the stick-zone map. P is constant. The "
         "page calculates in the browser, without network. Finite bodies are left out.",
         examples=["partialslip page", "partialslip page hertz-large-tension --out live"],
     )

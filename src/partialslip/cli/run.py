@@ -23,9 +23,9 @@ from partialslip.cli.common import (
     print_outcome,
     seconds,
 )
+from partialslip.run.methods import METHODS
 from partialslip.tools.allowance import Allowance
 from partialslip.tools.errors import InputError
-from partialslip.tools.methods import METHODS
 
 if TYPE_CHECKING:
     from partialslip.result import Result
@@ -86,7 +86,7 @@ def _run(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import working
     from partialslip.report import write_run
     from partialslip.run import default_methods
-    from partialslip.study.fatigue.of_run import criteria_sections
+    from partialslip.study.fatigue.page import criteria_sections
     from partialslip.tools.output.files import write_files
 
     counted, allowance = options.accuracy is not None or budget is not None, None
@@ -171,7 +171,7 @@ def _paid(options: argparse.Namespace, outcome: "Run", spent: float) -> list[str
 
 def _reached(fem: "Result") -> str:
     """Return how well ``fem`` knows its ends, in a, as text."""
-    from partialslip.run.judge.known import error_of
+    from partialslip.run.judge.reference import error_of
 
     keys = [key for key in ("a", "m", "n") if getattr(fem, key) is not None]
     errors = {key: error_of(fem, key, fem.method) for key in keys}

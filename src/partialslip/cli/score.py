@@ -21,9 +21,9 @@ from partialslip.cli.common import (
     print_outcome,
     where_of,
 )
+from partialslip.run.methods import REFERENCES
 from partialslip.tools.bars import LARGEST, Asked, asked
 from partialslip.tools.errors import InputError
-from partialslip.tools.methods import REFERENCES
 
 
 def add(commands: Commands) -> None:

@@ -9,15 +9,16 @@ rates at both ends of the leg, and by the sides of the nodes on the way.
 Scaled as in :mod:`partialslip.friction.history`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
 from partialslip.friction.active_set import Factored, Sides, Solution, solve_bounded
-from partialslip.friction.history import History, Steps, follow, resting, still
-from partialslip.friction.load_path import Missed, Path
-from partialslip.friction.path_following import Bounds, Follower, Leg, NothingSticksError, joined, noise
-from partialslip.scene.model import require_carried
+from partialslip.friction.coulomb_legs import Done, Legs
+from partialslip.friction.history import History, resting
+from partialslip.friction.load_path import Path
+from partialslip.friction.path_following import Bounds, Follower, Leg, NothingSticksError, noise
 from partialslip.tools.arrays import Array, Mask
 
 _AT = 1e-12  # accuracy: distance from the bound, relative, at which a node is on it
@@ -64,61 +65,18 @@ def march(
         zone a single one that has slipped shows that its end takes points back.
     """
     factored = factored or Factored(tangential)
-    require_carried([load[0] for load in path.cycle], float((f * normal).sum()))
-    path = replace(path, ways=((1.0,),) * (1 + len(path.cycle)), missed=Missed(0.0, 0.0))
+    skip = (lambda _: None) if path.settled > 0 else None  # nothing else is kept
     if path.half:
         contact = _Contact(factored, stretch, normal, f, path, near, few)
-        history = contact.followed()
-        if not contact.legs[0].turns:
+        history = contact.followed(skip)
+        if not contact.legs[0].leg:
             return history
         path = replace(path, half=False)
-    return _Contact(factored, stretch, normal, f, path, near, few).followed()
+    return _Contact(factored, stretch, normal, f, path, near, few).followed(skip)
 
 
-@dataclass(frozen=True)
-class _Done:
-    """A leg from ``load`` on with the ``change`` of the loads: ``leg``, what is known of it, or None if it was taken in
-    one step, the ``start`` and ``found`` forces."""
-
-    start: Array
-    load: Array
-    change: Array
-    found: Solution
-    leg: Leg | None = None
-
-    @property
-    def turns(self) -> bool:
-        """Whether one step would not have sufficed."""
-        return self.leg is not None
-
-    @property
-    def slipped(self) -> Array:
-        """Slip along +x and along -x, (2, n)."""
-        if self.leg:
-            return self.leg.slipped
-        return np.array([-self.found.rest, self.found.rest]).clip(0)
-
-    @property
-    def range(self) -> tuple[Array, Array]:
-        """Smaller and larger forces at the ends of the leg, (n,) each.
-
-        On the way, nodes of high order come to the bound before their neighbours do; the range would count them in.
-        """
-        return np.minimum(self.start, self.found.x), np.maximum(self.start, self.found.x)
-
-    @property
-    def changed(self) -> Array | None:
-        """As of :meth:`Leg.changed`; None if the leg was taken in one step."""
-        return self.leg.changed(self.leg.path > _SLIGHT * self.leg.path.max()) if self.leg else None
-
-    @property
-    def stuck(self) -> Array | None:
-        """Share of the leg at which each node last stuck again, (n,); nan where it never did."""
-        return self.leg.stuck if self.leg else None
-
-
-class _Contact:
-    """Legs of a path in turn; arguments as for :func:`march`."""
+class _Contact(Legs):
+    """Legs of a path at constant pressure; arguments as for :func:`march`."""
 
     def __init__(
         self,
@@ -130,43 +88,42 @@ class _Contact:
         near: Sides | None,
         few: int,
     ) -> None:
-        self._f, self._normal, self._bound = f, normal, f * normal
-        self._few = few if path.in_phase else 0
-        self.factored, self._stretch, self._path, self._near = factored, stretch, path, near
-        self.legs: list[_Done] = []
-        self._cycle = len(path.cycle)
+        ways = [Bounds.constant(normal)] * (1 + len(path.cycle))
+        super().__init__(factored.C, stretch, f, ways, path, few if path.in_phase else 0)
+        self.factored, self._normal, self._bound, self._near = factored, normal, f * normal, near
         factored.expect(1 + self._cycle * (0 if path.half else min(path.cycles, _EXPECTED)))
         self._stretched = factored.refined(stretch.T)
-        self._follower: Follower | None = None
 
-    def followed(self) -> History:
-        """Follow the path."""
-        before = self._path.before
-        begin = resting(0 * self._bound if before is None else before)
-        skip = (lambda _: None) if self._path.settled > 0 else None  # nothing else is kept
-        history = follow(self._path, self._advance, begin, self._f, skip=skip)
-        return self._completed(history)
+    @cached_property
+    def _follower(self) -> Follower:
+        return Follower(self.factored.C, self.factored.inverse)
 
-    def _advance(self, before: Solution, load: Array, change: Array) -> tuple[Solution, Array]:
-        """Go along one leg, as :func:`partialslip.friction.history.follow` asks for it."""
-        done = _Done(before.x, load, change, still(before)) if not change.any() else self._leg(before.x, load, change)
-        self.legs.append(done)
-        return done.found, self._normal
+    def _leg(self, start: Array, load: Array, change: Array, pressed: Bounds, bounds: Bounds) -> Done:
+        """Go along one leg: in one step, if that suffices."""
 
-    def _leg(self, start: Array, load: Array, change: Array) -> _Done:
-        if self._followed:
-            return self._follow(start, load, change)
-        found = self._one_step(start, float(load[0]), change, self._known)
-        if self._path.tension_stays or (
-            self._suffices(start, change, found) and self._agrees(start, load, change, found)
-        ):
-            return _Done(start, load, change, found)
-        return self._follow(start, load, change)
+        def done(found: Solution, leg: Leg | None = None) -> Done:
+            return Done(start, load, change, pressed, bounds, found, leg)
+
+        if not change.any():
+            return done(resting(start))
+        if not self._followed:
+            found = self._one_step(start, float(load[0]), change, self._known)
+            if self._path.tension_stays or (
+                self._suffices(start, change, found) and self._agrees(start, load, change, found)
+            ):
+                return done(found)
+        start = np.clip(start, -self._bound, self._bound)
+        if mirrored := self._mirrored(start, load, change):
+            return mirrored
+        try:
+            return super()._leg(start, load, change, pressed, bounds)
+        except NothingSticksError:  # so near to sliding that rounding lets no node stick: a step still has an answer
+            return done(self._one_step(start, float(load[0]), change, None))
 
     @property
     def _followed(self) -> bool:
         """Whether the next leg is followed without a trial: slip that turned round a cycle before does so again."""
-        return len(self.legs) > self._cycle and self.legs[-self._cycle].turns
+        return len(self.legs) > self._cycle and self.legs[-self._cycle].leg is not None
 
     @property
     def _known(self) -> Sides | None:
@@ -231,23 +188,7 @@ class _Contact:
                 return False
         return True
 
-    def _follow(self, start: Array, load: Array, change: Array) -> _Done:
-        self._follower = self._follower or Follower(self.factored.C, self.factored.inverse)
-        # a state of another mesh has the load, and keeps the bounds, to an error of that mesh only
-        start = np.clip(start, -self._bound, self._bound)
-        if (mirrored := self._mirrored(start, load, change)) is not None:
-            return mirrored
-        off = float(load[0] - change[0]) - float(start.sum())
-        Q = float(change[0]) + (off if abs(off) > _AT * float(self._bound.sum()) else 0.0)
-        try:
-            leg = self._follower.leg(
-                Bounds.constant(self._bound), start, change[1:3] @ self._stretch, Q, self._path.stages
-            )
-        except NothingSticksError:  # so near to sliding that rounding lets no node stick: a step still has an answer
-            return _Done(start, load, change, self._one_step(start, float(load[0]), change, None))
-        return _Done(start, load, change, leg.solution, leg)
-
-    def _mirrored(self, start: Array, load: Array, change: Array) -> _Done | None:
+    def _mirrored(self, start: Array, load: Array, change: Array) -> Done | None:
         """The mirror image of the leg before, if this leg begins at minus the loads and the forces of that one, to
         rounding, and goes the other way; None if not."""
         before = self.legs[-1] if self.legs else None
@@ -264,36 +205,27 @@ class _Contact:
         found = replace(
             before.found, x=leg.forces, rest=leg.rest, residual=residual, iterations=0, changes=0, shift=leg.shift
         )
-        return _Done(start, load, change, found, leg)
+        return replace(before, start=start, load=load, change=change, found=found, leg=leg)
 
     def _completed(self, history: History) -> History:
-        """``history`` with what is known of its legs."""
-        path, events = history.path, sum(each.leg.events for each in self.legs if each.leg)
+        path, last = history.path, self.legs[-self._cycle :]
         if path.half:
             return replace(history, slipped=np.abs(np.array([history.slip, history.slip])))
-        last = self.legs[-self._cycle :]
-        slipped = np.sum([each.slipped for each in last], axis=0)
+        history, slipped = super()._completed(history), np.sum([each.slipped for each in last], axis=0)
         if not path.in_phase:
-            lows, highs = zip(*(each.range for each in last), strict=True)
-            history = replace(history, q1=np.min(lows, axis=0), q2=np.max(highs, axis=0))
-        stages = [self._around(each) for each in last]
-        ways, forces = tuple(way for way, _, _ in stages), np.concatenate([states for _, states, _ in stages])
-        shifts = joined([shifts for *_, shifts in stages])
+            # on the way, nodes of high order come to the bound before their neighbours do: the ends of legs alone count
+            ends = [each for done in last for each in (done.start, done.found.x)]
+            history = replace(history, q1=np.min(ends, axis=0), q2=np.max(ends, axis=0))
         return replace(
             history,
-            slipped=slipped,
-            dissipated=float(self._bound @ slipped.sum(axis=0)),
-            around=Steps(ways, forces, self._normal[None], self._f, shifts),
-            turns=path.in_phase and any(each.turns for each in last),
-            changed=last[path.ends[1]].changed if path.in_phase else None,
-            stuck=last[path.ends[1]].stuck if path.in_phase else None,
-            events=events,
+            dissipated=float(self._bound @ slipped.sum(axis=0)),  # of single steps, too
+            around=history.around._replace(pressures=self._normal[None]),
+            turns=path.in_phase and any(each.leg for each in last),
         )
 
-    def _around(self, done: _Done) -> tuple[tuple[float, ...], Array, Array]:
-        """Fractions of a leg, ascending to 1, the forces (s, n) there, and the rigid shifts (s,) up to there."""
+    def _stages(self, done: Done) -> tuple[tuple[float, ...], Array, Array]:
         if done.leg:
-            return self._path.stages, done.leg.stages, done.leg.shifts
+            return super()._stages(done)
         count, Q = self._path.substeps, float(done.load[0] - done.change[0])
         shares = (np.arange(1, count + 1) / count).tolist()
         between = [

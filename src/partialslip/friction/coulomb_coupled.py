@@ -2,13 +2,14 @@
 (:mod:`partialslip.friction.coupled_step`), scaled as these."""
 
 import itertools
-from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 
 import numpy as np
 
 from partialslip.friction.active_set import Solution
+from partialslip.friction.contact_line import ContactLine
 from partialslip.friction.coupled_step import LoadStep, Pivot, Relative, solve_near
 from partialslip.friction.even_gap import PARABOLA, EvenGap
 from partialslip.friction.history import History, certified, follow, resting, still
@@ -36,9 +37,6 @@ _ENDS = 15.0  # accuracy: tolerance of q over tolerance of the ends
 _MOST, _WORK = 64, 16_000  # limit: steps of pressing, and of steps times nodes
 _ANEW = "anew"  # key of steps that do not begin where others did
 
-_Press = Callable[..., Pair]  # one step: force, gap, kept, where to begin, and its key
-_Off = Callable[[Array, Array], float]  # relative L2 difference of forces
-
 
 class SlidesError(InputError):
     """Bodies that a displacement moves slide, on this mesh: a finer one is less stiff, and bears less Q. ``factored``:
@@ -48,44 +46,29 @@ class SlidesError(InputError):
 
 
 @dataclass(frozen=True)
-class Nodes:
-    """Nodes of the contact line: ``x`` (n,), ``weights`` (n,) that turn tractions into forces, and ``ends(p, q,
-    rise=...) -> (left, right)``, the ends of the contact under nodal forces along y and x, (n,) each. ``resultants(p,
-    q) -> (points, normal, tangential)``: points (k,) within the contact, and the forces on their left, (k,) each;
-    needed without ``stages``. ``similar``: whether half-planes with Dundurs' ``beta`` are pressed together under the
-    even gap ``under``, so that the contact grows in similar ways; ``stages`` gives them, by default from a flat punch
-    on the nodes. ``sized``: the same of like bodies of a size, nearly; ``nearly_similar``: of any bodies of a size,
-    under a parabola. ``near``: about the half-width. ``trail``: where steps begin. ``means(forces)``: means over cells
-    of the traction of nodal forces (n,), times the roots of the cells' widths, (c,); by default each node has its own
-    cell."""
+class Growth:
+    """How the contact grows with the force that presses the bodies together: ``similar`` if these are half-planes with
+    Dundurs' beta, pressed under the even gap ``under``; ``stages`` gives the stages, by default from a flat punch on
+    the nodes. ``sized``: the same of like bodies of a size, nearly; ``nearly_similar``: of any bodies of a size, under
+    a parabola. ``near``: about the half-width."""
 
-    x: Array
-    weights: Array
-    ends: Callable[..., tuple[float, float]]
-    resultants: Callable[[Array, Array], tuple[Array, Array, Array]] | None
-    similar: bool
+    similar: bool = False
     sized: bool = False
     nearly_similar: bool = False
     near: float | None = None
-    trail: Trail | None = None
     stages: Stages | None = None
-    means: Callable[[Array], Array] | None = None
     under: EvenGap = PARABOLA
-    beta: float = 0.0
-
-    def half_width(self, forces: Pair) -> float:
-        """Half-width of the contact under the ``forces``."""
-        left, right = self.ends(*(each.x for each in forces))
-        return (right - left) / 2
 
 
 def press_coupled(
     C: Relative,
     gap: Array,
     f: Array,
-    line: Nodes | None,
+    line: ContactLine,
+    growth: Growth,
     least: int,
     accuracy: float,
+    trail: Trail | None = None,
     P: float = 1.0,
     pivot: Pivot | None = None,
 ) -> Pressed:
@@ -98,81 +81,117 @@ def press_coupled(
     Nodes touch one by one, in one step or the next, and lock in more or less than their neighbours: the change is that
     of means over cells.
 
-    ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` (n,) the coefficients of friction, ``line``
-    the nodes.
+    ``C`` are the compliances, ``gap`` (n,) the gap before loading, ``f`` (n,) the coefficients of friction.
     """
-    assert C.xx is not None
-    assert C.xy is not None
-    zero, xx, xy, whole = 0 * gap, C.xx, C.xy, P
-    apart = resting(zero), resting(zero)
-
-    trail = line.trail if line is not None else None
-    number = itertools.count()
-
-    def step(P: float, gap: Array, kept: Array, before: Pair, key: Hashable = None) -> Pair:
-        under = pivot and pivot._replace(moment=pivot.moment * P / whole)
-        this = LoadStep(xx, C.yy, xy, C.opening, f, P, gap, 0.0, kept, C.factors, None, under)
-        return solve_near(this, [before], trail if key != _ANEW else None, ("pressing", key or next(number)))
-
-    def steps(count: int) -> list[Pair]:
-        found = [apart]
-        for force in np.linspace(0, P, count + 1)[1:].tolist():
-            found.append(step(force, gap, C.moved(found[-1][0].x, found[-1][1].x)[0], found[-1]))
-        return found
-
-    norm = 1 / line.weights if line is not None else np.ones(len(gap))
-
-    def off(q: Array, other: Array) -> float:
-        size = float(norm @ q**2)
-        return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
-
-    vertex, settled = 0.0, _SETTLED * accuracy / _ENDS
-    if line is not None and (line.similar or line.sized or line.nearly_similar):
-        vertex = _vertex(line.x, gap) if line.under.parabolic else 0.0
-        line = replace(line, x=line.x - vertex)
-    if (
-        line is not None
-        and (line.similar or line.sized)
-        and (alike := _similar(C, gap, f, line, vertex, steps(1)[-1], settled, step, off))
-    ):
+    bodies, settled = _Bodies(C, gap, f, line, growth, P, pivot, trail), _SETTLED * accuracy / _ENDS
+    if (growth.similar or growth.sized) and (alike := _similar(bodies, settled)):
         return alike
-    if line is not None and line.nearly_similar:
-        near = line.near or line.half_width(steps(1)[-1])
-        if found := _nearly_similar(C, gap, f, line, near, settled, step, off):
-            return found
-    last, count = steps(least), least
+    if growth.nearly_similar and (found := _nearly_similar(bodies, settled)):
+        return found
+    last, count = bodies.in_steps(least), least
     while True:
-        before, last, count = last, steps(2 * count), 2 * count
-        errors = {"q": 2 * _changed(line, last[-1][1].x, before[-1][1].x, off)}
-        if line is not None:
-            errors["a"] = 2 * _moved(line, last[-1], before[-1])
-        grown = last[-1][0].x - last[-2][0].x, last[-1][1].x - last[-2][1].x
-        reached = errors["q"] <= accuracy and errors.get("a", 0.0) <= accuracy / _ENDS
+        before, last, count = last, bodies.in_steps(2 * count), 2 * count
+        (p, q), others = last[-1], before[-1]
+        errors = {"q": 2 * line.change(q.x, others[1].x), "a": 2 * bodies.moved(last[-1], others)}
+        grown = p.x - last[-2][0].x, q.x - last[-2][1].x
+        reached = errors["q"] <= accuracy and errors["a"] <= accuracy / _ENDS
         if reached or 2 * count > max(_MOST, 2 * least) or 2 * count * len(gap) > _WORK:
             return Pressed(*_certified(last[1:]), count, errors, grown, f)
 
 
-def _vertex(x: Array, gap: Array) -> float:
-    """Where a parabolic ``gap`` (n,) at ``x`` (n,) is smallest: there the bodies touch first."""
-    return float(np.polynomial.Polynomial.fit(x, gap, 2).deriv().roots()[0].real)
+@dataclass(frozen=True)
+class _Bodies:
+    """Bodies to be pressed together, as for :func:`press_coupled`."""
 
+    C: Relative
+    gap: Array
+    f: Array
+    line: ContactLine
+    growth: Growth
+    P: float
+    pivot: Pivot | None
+    trail: Trail | None
+    number: Iterator[int] = field(default_factory=itertools.count)
 
-def _moved(line: Nodes, forces: Pair, others: Pair) -> float:
-    """Largest distance between the ends of two contacts, in half-widths."""
-    (left, right), (l_other, r_other) = (line.ends(p.x, q.x) for p, q in (forces, others))
-    return max(abs(left - l_other), abs(right - r_other)) * 2 / (right - left)
+    @cached_property
+    def vertex(self) -> float:
+        """Where a parabolic gap is smallest: there the bodies touch first."""
+        fit = np.polynomial.Polynomial.fit(self.line.x, self.gap, 2)
+        return float(fit.deriv().roots()[0].real) if self.growth.under.parabolic else 0.0
 
+    @cached_property
+    def x(self) -> Array:
+        """Nodes (n,), from there on."""
+        return self.line.x - self.vertex
 
-def _changed(line: Nodes | None, q: Array, other: Array, off: _Off) -> float:
-    """Relative L2 difference of two tangential forces (n,), of means over cells where the ``line`` has any."""
-    if line is None or line.means is None:
-        return off(q, other)
-    size = float(np.linalg.norm(line.means(q)))
-    return float(np.linalg.norm(line.means(q - other))) / size if size > 0 else 0.0
+    @property
+    def apart(self) -> Pair:
+        """Forces of bodies that are apart."""
+        return resting(0 * self.gap), resting(0 * self.gap)
+
+    def step(self, P: float, gap: Array, kept: Array, before: Pair, key: Hashable = None) -> Pair:
+        """Forces under ``P`` over the ``gap`` (n,), of nodes that stick at ``kept`` (n,); a guess is ``before``."""
+        C, pivot = self.C, self.pivot and self.pivot._replace(moment=self.pivot.moment * P / self.P)
+        assert C.xx is not None
+        assert C.xy is not None
+        this = LoadStep(C.xx, C.yy, C.xy, C.opening, self.f, P, gap, 0.0, kept, C.factors, None, pivot)
+        trail, key = (None if key == _ANEW else self.trail), ("pressing", key or next(self.number))
+        return solve_near(this, [before], trail, key)
+
+    def in_steps(self, count: int) -> list[Pair]:
+        """Forces after each of ``count`` equal steps."""
+        found = [self.apart]
+        for force in np.linspace(0, self.P, count + 1)[1:].tolist():
+            found.append(self.step(force, self.gap, self.kept(found[-1]), found[-1]))
+        return found
+
+    def kept(self, forces: Pair) -> Array:
+        """Displacements (n,) along x under the ``forces``."""
+        return self.C.moved(forces[0].x, forces[1].x)[0]
+
+    def covered(self, half_width: float) -> Mask:
+        """Nodes (n,) that a flat punch of the ``half_width`` covers."""
+        return np.abs(self.x) <= half_width * (1 + _STICKS)
+
+    def punch(self, half_width: float, guess: Pair) -> Pair:
+        """Forces under the flat punch of the ``half_width`` and the force 1, from a ``guess`` of them."""
+        open_ = np.where(self.covered(half_width), 0.0, _FAR * half_width)
+        return self.step(1.0, open_, np.zeros(len(open_)), guess, _ANEW)
+
+    def half_width(self, forces: Pair) -> float:
+        """Half-width of the contact under the ``forces``."""
+        left, right = self.line.ends(forces[0].x, forces[1].x)
+        return (right - left) / 2
+
+    def moved(self, forces: Pair, others: Pair) -> float:
+        """Largest distance between the ends of two contacts, in half-widths."""
+        (left, right), (l_other, r_other) = (self.line.ends(p.x, q.x) for p, q in (forces, others))
+        return max(abs(left - l_other), abs(right - r_other)) * 2 / (right - left)
+
+    def off(self, forces: Pair, others: Pair) -> float:
+        """Relative L2 difference of the tangential forces."""
+        q, other, norm = forces[1].x, others[1].x, 1 / self.line.weights
+        size = float(norm @ q**2)
+        return float(np.sqrt(norm @ (q - other) ** 2 / size)) if size > 0 else 0.0
+
+    def from_a_punch(self, half_width: float) -> FlatPunch:
+        """Stages of pressing, from the flat punch of the ``half_width``."""
+        line, growth = self.line, self.growth
+        p, q = (each.x for each in self.punch(half_width, self.apart))
+        left, right = line.ends(p, q, rise=CORNER)  # between the last node and the next one
+        points, left_of = line.resultants(p, q)
+        between = left - self.vertex, right - self.vertex
+        punch = FlatPunch(
+            between, self.x, line.weights, (p, q), points - self.vertex, left_of, growth.sized, growth.under
+        )
+        if growth.sized or growth.under.parabolic:
+            return punch
+        pushes = float(self.f.max()) * abs(line.beta)
+        return replace(punch, gap=growth.under.under(*punch.beyond(pushes), pushes))
 
 
 def _settled(
-    line: Nodes, reach: float, tolerance: float, press: Callable[[float], Pair]
+    bodies: _Bodies, reach: float, tolerance: float, press: Callable[[float], Pair]
 ) -> tuple[Pair, float, float, int]:
     """Press from stages of contacts of half-width ``reach``, by secants until that is also the one that is found.
 
@@ -181,7 +200,7 @@ def _settled(
     count, before, least = 0, (0.0, 0.0), np.inf
     while True:
         found, count = press(reach), count + 1
-        off = line.half_width(found) - reach
+        off = bodies.half_width(found) - reach
         if abs(off) <= tolerance * reach or abs(off) > _SLOWEST * least or count == _TIMES:
             return found, reach, abs(off) / reach, count
         slope = (off - before[1]) / (reach - before[0]) if count > 1 else -1.0
@@ -189,102 +208,76 @@ def _settled(
         reach -= off / min(max(slope, _SLOPES[0]), _SLOPES[1])
 
 
-def _covered(line: Nodes, half_width: float) -> Mask:
-    """Nodes (n,) that a flat punch of the ``half_width`` covers."""
-    return np.abs(line.x) <= half_width * (1 + _STICKS)
-
-
-def _punch(line: Nodes, half_width: float, guess: Pair, step: _Press) -> Pair:
-    """Forces under the flat punch of the ``half_width`` and the force 1, from a ``guess`` of them."""
-    covered = _covered(line, half_width)
-    return step(1.0, np.where(covered, 0.0, _FAR * half_width), np.zeros(len(covered)), guess, _ANEW)
-
-
-def _similar(
-    C: Relative, gap: Array, f: Array, line: Nodes, vertex: float, first: Pair, accuracy: float, step: _Press, off: _Off
-) -> Pressed | None:
-    """Press self-similarly about the ``vertex``, from which the nodes of the ``line`` count, with last steps of two
-    sizes; the difference is the error estimate. Steps begin where the ``first`` one ended, which bears all of P. None
-    if like bodies of a size are not as similar as that, or touch elsewhere."""
-    none = resting(0 * gap), resting(0 * gap)
+def _similar(bodies: _Bodies, accuracy: float) -> Pressed | None:
+    """Press self-similarly about the vertex, with last steps of two sizes; the difference is the error estimate. Steps
+    begin where one that bears all of P ended. None if like bodies of a size are not as similar as that, or touch
+    elsewhere."""
+    line, grows, first = bodies.line, bodies.growth, bodies.in_steps(1)[-1]
 
     def press(stages: Stages, size: float, reach: float) -> Pair:
         p, q = stages.stage(reach, 1 - size)
-        return step(1.0, gap, C.moved(p, q)[0], (replace(first[0], x=p), replace(first[1], x=q)))
+        start = replace(first[0], x=p), replace(first[1], x=q)
+        return bodies.step(1.0, bodies.gap, bodies.kept(start), start)
 
-    def from_a_punch(half_width: float) -> FlatPunch:
-        p, q = (each.x for each in _punch(line, half_width, none, step))
-        left, right = line.ends(p, q, rise=CORNER)  # between the last node and the next one
-        assert line.resultants
-        points, *forces = line.resultants(p, q)
-        between = left - vertex, right - vertex
-        left_of = forces[0], forces[1]
-        punch = FlatPunch(between, line.x, line.weights, (p, q), points - vertex, left_of, line.sized, line.under)
-        if line.sized or line.under.parabolic:
-            return punch
-        pushes = float(f.max()) * abs(line.beta)
-        return replace(punch, gap=line.under.under(*punch.beyond(pushes), pushes))
-
-    reach, count, unlike, tried = line.near or line.half_width(first), 1, 0.0, list[Mask]()
+    reach, count, unlike, tried = grows.near or bodies.half_width(first), 1, 0.0, list[Mask]()
     while True:
-        tried.append(covered := _covered(line, reach))
+        tried.append(covered := bodies.covered(reach))
         if not covered.any():  # the contact is elsewhere than where the gap is smallest
             return None
-        stages = line.stages or from_a_punch(reach)
-        last, reach, left, pressed = _settled(line, reach, accuracy, partial(press, stages, stages.last / 2))
-        count += pressed + (line.stages is None)
-        covered = _covered(line, reach)  # two punches may each lead to the other
-        if line.stages or count >= _MOST or any(np.array_equal(covered, each) for each in tried):
+        stages = grows.stages or bodies.from_a_punch(reach)
+        last, reach, left, pressed = _settled(bodies, reach, accuracy, partial(press, stages, stages.last / 2))
+        count += pressed + (grows.stages is None)
+        covered = bodies.covered(reach)  # two punches may each lead to the other
+        if grows.stages or count >= _MOST or any(np.array_equal(covered, each) for each in tried):
             break
     growth = stages.growth(reach)
-    if line.sized:
-        if not _covered(line, HALF * reach).any():
+    if grows.sized:
+        if not bodies.covered(HALF * reach).any():
             return None
-        half = _punch(line, HALF * reach, none, step)
-        if (unlike := disproportion(line.x, growth, (half[0].x, half[1].x))) > _ROUGH:
+        half = bodies.punch(HALF * reach, bodies.apart)
+        if (unlike := disproportion(bodies.x, growth, (half[0].x, half[1].x))) > _ROUGH:
             return None
     rough = press(stages, stages.last, reach)
     law = stages.gap.off
-    errors = {"q": off(last[1].x, rough[1].x) + unlike + law, "a": _moved(line, last, rough) + left + _OF_LAW * law}
-    corners = None if line.stages else line.ends(*growth, rise=CORNER)
-    return Pressed(*_certified([last]), count + 1 + line.sized, errors, growth, f, corners)
+    errors = {"q": bodies.off(last, rough) + unlike + law, "a": bodies.moved(last, rough) + left + _OF_LAW * law}
+    corners = None if grows.stages else line.ends(*growth, rise=CORNER)
+    return Pressed(*_certified([last]), count + 1 + grows.sized, errors, growth, bodies.f, corners)
 
 
-def _nearly_similar(
-    C: Relative, gap: Array, f: Array, line: Nodes, near: float, accuracy: float, step: _Press, off: _Off
-) -> Pressed | None:
-    """Press bodies of a size, whose contact has about the half-width ``near``, with all punches and half of the last
-    step, and with all but one and the whole last step. The difference is the error estimate; None if it is large."""
-    size = float(f"{near:.2g}")  # so that the error of another mesh, from which it may be, does not matter
-    none, half_widths = resting(0 * gap), size * _PUNCHES
+def _nearly_similar(bodies: _Bodies, accuracy: float) -> Pressed | None:
+    """Press bodies of a size with all punches and half of the last step, and with all but one and the whole last step.
+    The difference is the error estimate; None if it is large."""
+    x, none, gap = bodies.x, bodies.apart, bodies.gap
+    near = bodies.growth.near or bodies.half_width(bodies.in_steps(1)[-1])
+    half_widths = float(f"{near:.2g}") * _PUNCHES  # the error of another mesh, from which it may be, does not matter
 
     def punch(half_width: float, like: Pair, wider: float) -> Pair:
         """The punch, from one that is so many times ``wider``."""
-        covered, nearest = _covered(line, half_width), np.searchsorted(middles, line.x * wider)
-        guess = replace(none, x=covered.astype(float)), replace(none, rest=like[1].rest[nearest] * covered)
-        return _punch(line, half_width, guess, step)
+        covered, nearest = bodies.covered(half_width), np.searchsorted(middles, x * wider)
+        guess = replace(none[0], x=covered.astype(float)), replace(none[1], rest=like[1].rest[nearest] * covered)
+        return bodies.punch(half_width, guess)
 
-    middles, under = (line.x[1:] + line.x[:-1]) / 2, [(none, none)]
+    middles, under = (x[1:] + x[:-1]) / 2, [none]
     for half_width, wider in zip(half_widths.tolist(), (1.0, *_PUNCHES[:-1] / _PUNCHES[1:]), strict=True):
         under.append(punch(half_width, under[-1], wider))
     under = under[1:]
-    known = [(p.x > 0, (p.x > 0) & (q.sides == 0), *C.moved(p.x, q.x)) for p, q in under]
+    known = [(p.x > 0, (p.x > 0) & (q.sides == 0), *bodies.C.moved(p.x, q.x)) for p, q in under]
     if not all(sticks.any() for _, sticks, _, _ in known):
         return None
-    punches, found = Punches.of(half_widths, line.x, known), under[:1]
+    punches, found = Punches.of(half_widths, x, known), under[:1]
 
     def press(count: int, last: float, reach: float) -> Pair:
-        found.append(step(1.0, gap, punches.kept(gap, reach, 1 - last, count), found[-1], ("last", count)))
+        found.append(bodies.step(1.0, gap, punches.kept(gap, reach, 1 - last, count), found[-1], ("last", count)))
         return found[-1]
 
-    whole = partial(press, len(under), punches.last / 2)
-    last, reach, left, count = _settled(line, near, accuracy, whole)
+    last, reach, left, count = _settled(bodies, near, accuracy, partial(press, len(under), punches.last / 2))
     rough = press(len(under) - 1, punches.last, reach)
-    errors = {"q": off(last[1].x, rough[1].x), "a": _moved(line, last, rough) + left}
+    errors = {"q": bodies.off(last, rough), "a": bodies.moved(last, rough) + left}
     if errors["q"] > _ROUGH:
         return None
     p, q = (each.x for each in punch(reach, under[0], half_widths[0] / reach))
-    return Pressed(*_certified([last]), len(under) + count + 2, errors, (p, q), f, line.ends(p, q, rise=CORNER))
+    corners = bodies.line.ends(p, q, rise=CORNER)
+    return Pressed(*_certified([last]), len(under) + count + 2, errors, (p, q), bodies.f, corners)
 
 
 def _certified(done: Sequence[Pair]) -> Pair:
@@ -299,9 +292,11 @@ def march(
     bent: Array,
     f: Array,
     path: Path,
+    line: ContactLine,
+    growth: Growth,
     pressed: Array | None = None,
-    line: Nodes | None = None,
     accuracy: float = 1e-3,
+    trail: Trail | None = None,
     pivot: Pivot | None = None,
 ) -> tuple[History, Solution, Pressed | None]:
     """Press the bodies together with friction and follow the path of the loads.
@@ -321,12 +316,14 @@ def march(
     f : (n,) array
         Coefficient of friction.
     path : Path
+    line : ContactLine
+    growth : Growth
     pressed : (n,) array, optional
         Normal forces at the beginning of the path; default: the bodies are apart.
-    line : Nodes, optional
-        Nodes of the contact line.
     accuracy : float
         Tolerance of q for the steps of pressing, relative L2.
+    trail : Trail, optional
+        Where steps begin.
     pivot : Pivot, optional
         Pin on which a body turns; its moment is that of the path.
 
@@ -346,7 +343,7 @@ def march(
 
     if pressed is None:
         P = path.begin[3] if path.presses_anew else 1.0
-        first = press_coupled(full, gap, f, line, path.substeps, accuracy, P, turning(path.begin))
+        first = press_coupled(full, gap, f, line, growth, path.substeps, accuracy, trail, P, turning(path.begin))
         done = [(first.normal, first.tangential)]
     else:
         done = [(resting(pressed), resting(0 * gap if path.before is None else path.before))]
@@ -368,7 +365,7 @@ def march(
         if path.actuator is not None:  # which was bent by the forces before the step
             Q = float(change[0]) + path.actuator * float(before.x.sum())
         this = LoadStep(xx, C.yy, xy, full.opening, f, P, gap, Q, kept, full.factors, path.actuator, turning(load))
-        normal, sheared = solve_near(this, starts, line.trail if line is not None else None, ("path", len(done)))
+        normal, sheared = solve_near(this, starts, trail, ("path", len(done)))
         if path.actuator is not None and not ((normal.x > 0) & (sheared.sides == 0)).any():
             raise SlidesError("load.displacement: must keep |Q| below f P; the contact slides on the way")
         done.append((replace(normal, residual=np.maximum(normal.residual, sheared.residual / f)), sheared))

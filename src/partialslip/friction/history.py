@@ -6,6 +6,7 @@ Scaled: lengths by sqrt(A R P), forces by P and displacements by A P, so that no
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,20 +48,12 @@ class History:
         constant pressure at its load points.
     pressures : two (n,) arrays
         Normal forces at load points 1 and 2.
-    room : (n,) array or None
-        Where the pressure varies, out of phase: the least room of q up to f p in the last cycle, plus that down to
-        -f p; zero where a node slips both ways, or is open at times. None elsewhere: it is f (p_1 + p_2) less the
-        change of q without sign.
     slip : (n,) array
         Slip from load point 1 to 2 of the last cycle.
     net_slip : (n,) array
         Slip over the whole last cycle; zero in a steady state.
     dissipated : float
         Work against friction over the last cycle.
-    end : two (n,) arrays
-        Tangential and normal forces at the end of the path.
-    f : (n,) array
-        Coefficient of friction.
     load_steps : int
         Number of load steps solved; at constant pressure, of legs.
     slipped : (2, n) array or None
@@ -95,11 +88,8 @@ class History:
     slip: Array
     net_slip: Array
     dissipated: float
-    end: tuple[Array, Array]
     load_steps: int
     around: "Steps"
-    f: Array
-    room: Array | None = None
     slipped: Array | None = None
     held: Mask | None = None
     turns: bool = False
@@ -114,11 +104,11 @@ class History:
         points = [
             replace(step, x=step.x[nodes], rest=step.rest[nodes], residual=step.residual[nodes]) for step in self.points
         ]
-        fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip", "f")} | {
-            key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "pressures", "end")
+        fields: dict[str, Any] = {key: getattr(self, key)[nodes] for key in ("q1", "q2", "slip", "net_slip")} | {
+            key: tuple(each[nodes] for each in getattr(self, key)) for key in ("at_ends", "pressures")
         }
         fields["around"] = self.around.of(nodes)
-        some = {key: getattr(self, key) for key in ("room", "slipped", "held", "changed", "stuck", "rooms")}
+        some = {key: getattr(self, key) for key in ("slipped", "held", "changed", "stuck", "rooms")}
         fields |= {key: each[..., nodes] for key, each in some.items() if each is not None}
         return replace(self, points=points, **fields)
 
@@ -131,6 +121,26 @@ class History:
         numbers = sorted({*range(2 * cycle + 1), *range(len(self.points) - cycle, len(self.points))})
         known = [number for number in numbers if 0 <= number < len(self.points)]
         return [(self.points[number].x, bounds.get((number - 1) % cycle, self.bound)) for number in known]
+
+    @property
+    def end(self) -> tuple[Array, Array]:
+        """Tangential and normal forces at the end of the path, (n,) each."""
+        return self.points[-1].x, self.around.pressures[-1]
+
+    @property
+    def f(self) -> Array:
+        """Coefficient of friction, (n,)."""
+        return self.around.f
+
+    @cached_property
+    def room(self) -> Array | None:
+        """Where the pressure varies, out of phase: the least room of q up to f p in the last cycle, plus that down to
+        -f p, (n,); zero where a node slips both ways, or is open at times. None elsewhere: it is f (p_1 + p_2) less the
+        change of q without sign."""
+        if self.path.in_phase or not self.path.presses_anew:
+            return None
+        forces, bounds = self.around.forces, self.around.bounds
+        return np.maximum((bounds - forces).min(axis=0) + (bounds + forces).min(axis=0), 0.0)
 
     @property
     def bound(self) -> Array:
@@ -403,9 +413,7 @@ def follow(
     if path.presses_anew:
         bounds = f * pressures
         slip = -np.array([step.rest for step in steps])
-        room = (bounds - forces).min(axis=0) + (bounds + forces).min(axis=0)
         anew = {
-            "room": None if path.in_phase else np.maximum(room, 0.0),
             "held": (bounds > 0).all(axis=0),
             "slipped": np.array([slip.clip(0).sum(axis=0), -slip.clip(None, 0).sum(axis=0)]),
         }
@@ -421,10 +429,8 @@ def follow(
         slip=slips[path.ends[1]] - slips[path.ends[0]],
         net_slip=slips[-1],
         dissipated=dissipated,
-        end=(ends[-1][0].x, ends[-1][1]),
         load_steps=taken,
         around=Steps(tuple(ways), forces, pressures, f, np.cumsum([step.shift for step in steps])),
-        f=f,
         rooms=np.array(cycles.rooms[-3:]),
         steady=cycles.steady,
         **anew,
@@ -445,10 +451,8 @@ def _reversed(path: Path, first: Solution, went: "_Way", f: Array) -> History:
         slip=slip,
         net_slip=0 * slip,
         dissipated=2 * float(forces @ slip),
-        end=(forces, pressure),
         load_steps=len(went),
         around=Steps(((1.0,), (1.0,)), np.array([-forces, forces]), pressure[None], f, np.array([-way.shift, 0.0])),
-        f=f,
     )
 
 

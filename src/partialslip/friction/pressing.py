@@ -44,7 +44,7 @@ from scipy.special import hyp2f1
 from partialslip.friction.active_set import Solution
 from partialslip.friction.even_gap import PARABOLA, EvenGap
 from partialslip.friction.zone_ends import StickInterval
-from partialslip.tools.arrays import Array, Mask
+from partialslip.tools.arrays import Array, Indices, Mask
 
 _STICKS = 1e-9  # accuracy: relative tolerance of the friction bound
 _TELLING = 1e-9  # accuracy: tolerance of lengths, relative to the half-width
@@ -73,6 +73,10 @@ class Pressed:
     growth: tuple[Array, Array]
     f: Array
     corners: tuple[float, float] | None = None
+
+    def on(self, nodes: Indices) -> "Pressed":
+        """The same with the growth at some ``nodes`` only (indices)."""
+        return replace(self, growth=(self.growth[0][nodes], self.growth[1][nodes]), f=self.f[nodes])
 
     def slipped(self) -> bool:
         """Whether any node has slipped."""

@@ -2,15 +2,15 @@
 
 import itertools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from partialslip.friction.contact_line import ContactLine, Ends
 from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
 from partialslip.friction.pressing import Pressed
-from partialslip.friction.zone_ends import StickInterval
 from partialslip.tools.arrays import Array, Indices
 from partialslip.tools.bars import BARS, LEAST_SHEAR
 
@@ -29,22 +29,22 @@ def steps_matter(errors: Mapping[str, float], accuracy: float) -> bool:
 
 
 def of_steps(
-    history: History, gradual: History, zones: tuple[StickInterval, StickInterval], weights: Array, half_width: float
+    line: ContactLine, history: History, gradual: History, half_width: float, common: Ends | None = None
 ) -> Errors:
     """Errors of m and n (in contact half-widths), q, q1 and q2 (relative L2) of a history in steps.
 
     Parameters
     ----------
+    line : ContactLine
+        With the nodes of both histories.
     history, gradual : History
         With the steps taken, and without any.
-    zones : two StickInterval
-        Stick zones of ``history`` and ``gradual``.
-    weights : (n,) array
-        Factors that turn tractions at the nodes into forces.
     half_width : float
         Half-width of the contact.
+    common : (float, float), optional
+        Ends of what is in contact at both load points; by default as the forces tell.
     """
-    held, (zone, other) = np.sqrt(weights), zones
+    held, (zone, other) = np.sqrt(line.weights), (line.stick_zone(each, common) for each in (history, gradual))
     found = {"m": abs(zone.left - other.left) / half_width, "n": abs(zone.right - other.right) / half_width}
     for key in _SHEARS:
         forces = getattr(history, key)
@@ -55,24 +55,16 @@ def of_steps(
     return found
 
 
-def along_path(
-    history: History,
-    finer: History,
-    zones: tuple[StickInterval, StickInterval],
-    ends: Callable[[History], tuple[float, ...]],
-    weights: Array,
-    half_width: float,
-) -> Errors:
+def along_path(line: ContactLine, history: History, finer: History, largest: int) -> Errors:
     """Errors of :func:`of_steps` and, as p varies with q in coupled bodies, of a, left and right (in contact
-    half-widths) and of p (relative L2): twice the change due to finer steps, as errors are of first order in the steps.
-
-    Parameters as for :func:`of_steps`; ``finer`` follows :func:`other_steps`. ``ends`` gives the left and right ends of
-    the contact at load points 1 and 2, four numbers.
-    """
-    found = {key: 2 * error for key, error in of_steps(history, finer, zones, weights, half_width).items()}
-    off = 2 * np.abs(np.subtract(ends(history), ends(finer))) / half_width
-    found |= {"a": float(off[2:].mean()), "left": float(off[::2].max()), "right": float(off[1::2].max())}
-    p, other = (each.bounds[1] / np.sqrt(weights) for each in (history, finer))
+    half-widths at the load point with the ``largest`` P) and of p (relative L2): twice the change due to ``finer``
+    steps (:func:`other_steps`), as errors are of first order in the steps."""
+    ends, others = (line.ends_at_points(each) for each in (history, finer))
+    half_width = (ends[largest - 1][1] - ends[largest - 1][0]) / 2
+    found = {key: 2 * error for key, error in of_steps(line, history, finer, half_width).items()}
+    off = 2 * np.abs(np.subtract(ends, others)) / half_width
+    found |= {"a": float(off[1].mean()), "left": float(off[:, 0].max()), "right": float(off[:, 1].max())}
+    p, other = (each.bounds[1] / np.sqrt(line.weights) for each in (history, finer))
     found["p"] = 2 * float(np.linalg.norm(p - other) / np.linalg.norm(p))
     return found
 

@@ -8,16 +8,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from partialslip.halfplane.change import Change
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.stage import LostError
 from partialslip.halfplane.loading import Loading, loading
 from partialslip.halfplane.shape import places_between
-from partialslip.halfplane.turning import Followed, Reached, Turning
+from partialslip.halfplane.turning import Turned, Turning
 from partialslip.result import PATH_DEPENDENT
 from partialslip.scene import Load
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 
+# why there are no q1 and q2
+FRICTIONLESS, SLIDES, RATCHETS = "there is no friction", "the contact slides", "the contact ratchets"
+STARTED = "the path goes on from a state, which the closed form cannot follow"
 _ROUNDING = 1e-9  # accuracy: tolerance: lengths in a, tractions in f p0, slip in A f p0 a
 _PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]
 _SHARES = np.linspace(0, 1, 9)[1:-1]
@@ -26,15 +30,28 @@ _Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Levels:
-    """Shear tractions at the load points, scaled as in :class:`Loading`.
+    """Shear tractions at the load points of the contact ``pressed``, scaled as in :class:`Loading`.
 
     At the load point with the index ``known`` (0 or 1) the traction is that of the ``first`` loading. At the other it
     differs by the change over half a ``cycle``.
     """
 
-    first: Loading | Reached | Followed
-    cycle: Loading | Turning
+    pressed: Contact
+    f: float
+    first: Loading | Turned
+    cycle: Change
     known: int
+
+    @property
+    def breaks(self) -> list[float]:
+        """Places at which the first loading is not smooth, m."""
+        return self.pressed.places(self.first.breaks).tolist()
+
+    def q(self, x: Array) -> tuple[Array, Array]:
+        """q1 and q2 at ``x`` (m), Pa."""
+        unit = self.f * self.pressed.p0
+        q1, q2 = self.at(self.pressed.scaled(x))
+        return unit * q1, unit * q2
 
     def at(self, x: Array) -> tuple[Array, Array]:
         """q1 and q2 at ``x``, in f p0, within the friction bound.
@@ -54,7 +71,7 @@ class Levels:
         return (q - dq, q) if self.known else (q, q + dq)
 
 
-def levels(pressed: Contact, f: float, load: Load, cycle: Loading | Turning) -> Levels | str:
+def levels(pressed: Contact, f: float, load: Load, cycle: Change) -> Levels | str:
     """q1 and q2 of the steady state, or the reason why no closed form gives them.
 
     The path goes from zero load to the last load point and then through all load points. Let Z be the stick zone of the
@@ -72,8 +89,9 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Loading | Turning) -> 
     points = [load.along[end] for end in load.ends]
     if isinstance(cycle, Turning):
         return _where_slip_turns(pressed, f, load, cycle)
+    assert isinstance(cycle, Loading)
     if load.fully_reversed:
-        return Levels(loading(pressed, f, *points[1], bound=1), cycle, 1)
+        return Levels(pressed, f, loading(pressed, f, *points[1], bound=1), cycle, 1)
     reason = ""
     for known in sorted((0, 1), key=lambda end: -abs(points[end][0])):
         found = _levels(pressed, f, load, cycle, points, known)
@@ -87,14 +105,15 @@ def _where_slip_turns(pressed: Contact, f: float, load: Load, cycle: Turning) ->
     """q1 and q2 where slip turns round: known where every point slips in the steady cycle, and where the loads can be
     followed from zero."""
     if not cycle.permanent:
-        return Levels(Reached(cycle), cycle, 1)
+        return Levels(pressed, f, cycle.reached, cycle, 1)
     lost = f"{PATH_DEPENDENT}on the way, and the first loading decides what is locked in; use march"
     if cycle.way.parted or len(load.points) > 2:
         return lost
     Q, sigma = load.points[-1]
     unit = f * pressed.p0
     try:
-        return Levels(Followed.from_zero(cycle, Q / (unit * pressed.a), sigma / unit, load.cycles), cycle, 1)
+        first = cycle.from_zero(Q / (unit * pressed.a), sigma / unit, load.cycles)
+        return Levels(pressed, f, first, cycle, 1)
     except LostError:
         return lost
 
@@ -130,8 +149,8 @@ def _levels(pressed: Contact, f: float, load: Load, cycle: Loading, points: list
         signs = np.where(x < right, first.signs[0], first.signs[1])
         if (signs * more < -_ROUNDING).any():
             return "mean loads act, and slip reverses on the path to the second load point; use march"
-    found = Levels(first, cycle, known)
-    if not _bounded(pressed, f, load, found):
+    found = Levels(pressed, f, first, cycle, known)
+    if not _bounded(load, found):
         return "mean loads act, and the first loading less the change exceeds f p; use march"
     return found
 
@@ -144,7 +163,7 @@ def _before(load: Load, points: list[_Point], known: int) -> list[_Point]:
     return [point for point in turns if any(point)]
 
 
-def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
+def _bounded(load: Load, found: Levels) -> bool:
     """Whether |q| <= f p up to the other load point and on the way back; if both ends slip the same way, |q| is largest
     at a load point."""
     kinks = np.array(found.cycle.shape.strong_kinks)
@@ -155,7 +174,8 @@ def _bounded(pressed: Contact, f: float, load: Load, found: Levels) -> bool:
         changes = load.dQ, load.dsigma, load.dslope
         try:
             stages = [
-                loading(pressed, f, *(share * change for change in changes), bound=2) for share in _SHARES.tolist()
+                loading(found.pressed, found.f, *(share * change for change in changes), bound=2)
+                for share in _SHARES.tolist()
             ]
         except InputError:  # more than one zone sticks on the way
             return False

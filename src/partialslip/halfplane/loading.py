@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from partialslip.halfplane.change import Change
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.mean_bound import mean_load_bound
 from partialslip.halfplane.shape import Shape
@@ -25,55 +26,8 @@ _ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
 
 
 @dataclass(frozen=True)
-class Loading:
-    """Change of shear traction and slip due to one proportional change of the loads.
-
-    Parameters
-    ----------
-    shape : Shape
-    Qf, sf : float
-        Changes relative to the ``bound``: turn dQ/(bound f P) and 2 \\|dsigma\\|/(bound f p0), in the contact's middle.
-    turn : int
-        -1 if dQ < 0 (with a slope, if :func:`partialslip.halfplane.steady.drive` < 0): q is reversed.
-    mirror : int
-        -1 if the sign of dsigma is not ``turn``: x is mirrored.
-    bound : int
-        Largest change of traction, in f p: 1 for a first loading, 2 for half a cycle.
-    zone : StickZone
-        Stick zone for positive changes of both loads, on the mirrored pressure; ``ends`` has the mirrored one.
-    gf : float
-        Change of the tension along x, turn 2 a dslope/(bound f p0).
-    """
-
-    shape: Shape
-    Qf: float
-    sf: float
-    turn: int
-    mirror: int
-    bound: int
-    zone: StickZone[float]
-    gf: float = 0.0
-
-    @property
-    def seen(self) -> Shape:
-        """Pressure over the mirrored x, on which both changes of the loads are positive."""
-        return self.shape if self.mirror > 0 else self.shape.mirrored
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Left and right end of the stick zone, for the signs of the loads."""
-        zone = self.zone._replace(centre=self.mirror * self.zone.centre)
-        return zone.left, zone.right
-
-    @property
-    def permanent(self) -> tuple[float, float] | None:
-        """Ends of the zone of points that never slip, for the signs of the loads."""
-        return self.ends
-
-    @property
-    def breaks(self) -> list[float]:
-        """Places at which the change of traction is not smooth, ascending."""
-        return list(self.ends)
+class Loading(Change):
+    """Change of shear traction and slip due to one proportional change of the loads, in a single step."""
 
     @property
     def signs(self) -> tuple[int, int]:
@@ -81,13 +35,7 @@ class Loading:
         left, right = (self.turn * int(self.zone.s), self.turn)[:: self.mirror]
         return left, right
 
-    @property
-    def nothing(self) -> bool:
-        """Whether no load changes."""
-        return self.Qf == 0 and self.sf == 0 and self.gf == 0
-
     def traction(self, x: Array) -> Array:
-        """Change of shear traction at ``x``, in f p0."""
         if self.nothing:
             return np.zeros_like(x)
         return self.turn * self.bound * half_range(self.mirror * x, self.zone, self.seen, self.gf)
@@ -140,7 +88,6 @@ class Loading:
 
     @property
     def one_way(self) -> bool:
-        """Whether dq has one sign, so that gross sliding is all that bounds the mean of Q."""
         return self.zone.s > 0 and self.gf <= 0 and self.shape.convex
 
     @property
@@ -150,7 +97,6 @@ class Loading:
 
     @property
     def worn(self) -> Worn:
-        """Slip over half a cycle, and the energy that a cycle dissipates."""
         return dissipation(self.zone, self.seen, self.gf).turned(self.mirror, self.turn)
 
     @cached_property

@@ -104,7 +104,8 @@ class PressureStage(NamedTuple):
 
 
 class PressurePath:
-    """The contacts of ``scene`` on the straight way between load points 1 and 2 (``back``: from 2 to 1)."""
+    """The contacts of ``scene`` on the straight way between load points 1 and 2 (``back``: from 2 to 1), and the stages
+    of the way, each of which is solved once."""
 
     def __init__(self, scene: Scene, back: bool = False) -> None:
         way = -1 if back else 1
@@ -112,6 +113,12 @@ class PressurePath:
         self._first, self._second = scene.end_pressing[::way]
         load = scene.load
         self.dQ, self.dsigma, self.dslope = way * load.dQ, way * load.dsigma, way * load.dslope
+        self._stages: dict[float, PressureStage] = {}
+
+    @classmethod
+    def both(cls, scene: Scene) -> "Ways":
+        """The ways from load point 1 to 2, and back."""
+        return cls(scene), cls(scene, back=True)
 
     def at(self, share: float) -> Contact:
         """Contact at the ``share`` of the way, from 0 to 1."""
@@ -122,13 +129,20 @@ class PressurePath:
         """Contact at the beginning of the way."""
         return self.at(0.0)
 
+    @cached_property
+    def end(self) -> Contact:
+        """Contact at the end of the way."""
+        return self.at(1.0)
+
     def stage(self, share: float) -> PressureStage:
         """Stage at the ``share`` of the way, from 0 to 1."""
-        now = self.at(share)
-        mean = Mean(self.begin, now).contact
-        loads = (share * load for load in (self.dQ, self.dsigma, self.dslope))
-        change = loading(mean, self._scene.friction.f, *loads, bound=2)
-        return PressureStage(now, mean, change)
+        if share not in self._stages:
+            now = self.at(share)
+            mean = Mean(self.begin, now).contact
+            loads = (share * load for load in (self.dQ, self.dsigma, self.dslope))
+            change = loading(mean, self._scene.friction.f, *loads, bound=2)
+            self._stages[share] = PressureStage(now, mean, change)
+        return self._stages[share]
 
     def pressed(self, now: Contact) -> tuple[float, float]:
         """Rates of the increment of p over the way in the contact ``now``, dp = (first + second y/a)/sqrt(a^2 - y^2),
@@ -151,3 +165,6 @@ class PressurePath:
 def common(first: Contact, second: Contact) -> tuple[float, float]:
     """Left and right end, m, of the part that two contacts have in common."""
     return max(first.ends[0], second.ends[0]), min(first.ends[1], second.ends[1])
+
+
+Ways = tuple[PressurePath, PressurePath]

@@ -15,15 +15,17 @@ def undetermined(regime: Regime, turns: bool, found: object) -> dict[str, str]:
     return levels | (dict.fromkeys(("m", "n", "q"), RATCHETS) if regime == "ratchets" else {})
 
 
-def remarks(regime: Regime, turns: bool, undetermined: dict[str, str], slides: str, ratchets: str) -> tuple[str, ...]:
-    """Notes on the result; ``slides`` and ``ratchets`` are those of contacts that slide and ratchet."""
+def remarks(regime: Regime, turns: bool, undetermined: dict[str, str], anew: bool) -> tuple[str, ...]:
+    """Notes on the result; ``anew``: whether the pressure varies."""
     if regime == "frictionless":
         return (FRICTIONLESS,)
     if regime == "sliding":
-        return (slides,)
+        once = "" if anew else ", or dQ >= 2 f P"
+        return (f"the contact slides: |Q| >= f P at a load point{once}; there is no steady partial slip",)
     notes: list[str] = []
     if regime == "ratchets":
-        notes.append(ratchets)
+        beyond = "outside the bounds" if anew else "above the bound"
+        notes.append(f"the mean of Q is {beyond} for a steady state: the contact ratchets")
     elif not turns and "q2" in undetermined:
         notes.append(f"q1 and q2: {undetermined['q2']}")
     if turns:

@@ -8,9 +8,10 @@ import numpy as np
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean_pressure import PressurePath
+from partialslip.halfplane.mean_pressure import PressurePath, Ways
 from partialslip.halfplane.stress import Acting, Fields, Points, Shear, StressState, half_of, reached
 from partialslip.halfplane.turning import Turning
+from partialslip.halfplane.varying import Cycle
 from partialslip.result import StickZone
 from partialslip.scene import Load, Scene
 from partialslip.tools.arrays import Array
@@ -94,9 +95,9 @@ class Around:
         return back, float(np.interp(position, np.arange(len(way)), way))
 
 
-def constant(scene: Scene, pressed: Contact, found: Levels) -> Around:
+def constant(scene: Scene, found: Levels) -> Around:
     """Stresses under constant pressure, between the tractions ``found`` at the load points."""
-    load = scene.load
+    load, pressed = scene.load, found.pressed
     _, sigma, slope = load.along[load.ends[found.known]]
     known = (1.0, reached(pressed, found.first, sigma, slope))
     change = half_of(pressed, found.cycle, load.dsigma, load.dslope)
@@ -104,30 +105,33 @@ def constant(scene: Scene, pressed: Contact, found: Levels) -> Around:
     first, second = (other, (known,)) if found.known else ((known,), other)
     unknown = "" if found.cycle.holds else "slip reverses"
     fields = Fields(pressed.f, (StressState(pressed, first), StressState(pressed, second)))
-    return Around(load, fields, _Constant(scene, pressed, found.cycle), unknown)
+    return Around(load, fields, _Constant(load, found), unknown)
 
 
-def varying(scene: Scene, end: Contact, loaded: Loading, unknown: str) -> Around:
-    """Stresses under varying pressure, from the first loading to load point 2 in the contact ``end``."""
-    load, way = scene.load, _Varying(scene)
+def varying(cycle: Cycle, loaded: Loading) -> Around:
+    """Stresses in a ``cycle`` under varying pressure, from the first loading to load point 2."""
+    load = cycle.scene.load
+    way = _Varying(cycle.ways)
     _, sigma, slope = load.along[load.ends[1]]
-    second: _Sum = ((1.0, Shear.of(end, loaded, sigma, slope)),)
+    second: _Sum = ((1.0, Shear.of(cycle.second, loaded, sigma, slope)),)
     _, change = way(back=False, share=1.0)
     first = (*second, *((-factor, shear) for factor, shear in change))
-    fields = Fields(scene.friction.f, (StressState(PressurePath(scene).begin, first), StressState(end, second)))
-    return Around(load, fields, way, unknown)
+    fields = Fields(cycle.scene.friction.f, (StressState(cycle.first, first), StressState(cycle.second, second)))
+    return Around(load, fields, way, "slip reverses" if cycle.turns_round else "")
 
 
-def without_shear(scene: Scene) -> Around:
-    """Stresses of bodies that are pressed together without any shear traction."""
-    return Around(scene.load, Fields(scene.friction.f, _ends(scene)), _Pressed(scene))
+def without_shear(scene: Scene, ways: Ways | None = None) -> Around:
+    """Stresses of bodies that are pressed together without any shear traction; ``ways`` between the load points, where
+    they are known."""
+    ways = ways or PressurePath.both(scene)
+    return Around(scene.load, Fields(scene.friction.f, _ends(scene, ways)), _Pressed(ways))
 
 
-def sliding_state(scene: Scene) -> Around | None:
-    """Stresses at the load points of a contact that slides at both, with q = f p; None where Q is larger, or smaller at
-    a load point: q is then not known."""
-    found = []
-    for point, state in zip(scene.load.ends, _ends(scene), strict=True):
+def sliding_state(scene: Scene, ways: Ways | None = None) -> Around | None:
+    """Stresses at the load points of a contact that slides at both, with q = f p, as of :func:`without_shear`; None
+    where Q is larger, or smaller at a load point: q is then not known."""
+    found, ways = [], ways or PressurePath.both(scene)
+    for point, state in zip(scene.load.ends, _ends(scene, ways), strict=True):
         Q, contact = scene.load.points[point][0], state.pressed
         f = contact.f
         if abs(abs(Q) - f * contact.P) > _SLIDING * f * contact.P:
@@ -135,13 +139,13 @@ def sliding_state(scene: Scene) -> Around | None:
         nothing = StickZone(-np.inf, 0.0, 1)
         shear = Shear(contact, nothing, 1 if Q > 0 else -1, 1, 0.0, 0.0, 0.0)
         found.append(state._replace(shears=((1.0, shear),)))
-    return Around(scene.load, Fields(f, tuple(found)), _Pressed(scene), "the contact slides")
+    return Around(scene.load, Fields(f, tuple(found)), _Pressed(ways), "the contact slides")
 
 
-def _ends(scene: Scene) -> tuple[StressState, StressState]:
+def _ends(scene: Scene, ways: Ways) -> tuple[StressState, StressState]:
     """States at load points 1 and 2 without shear traction."""
-    path, load = PressurePath(scene), scene.load
-    contacts = (path.begin, path.at(1.0)) if scene.presses_anew else (path.begin,) * 2
+    path, load = ways[0], scene.load
+    contacts = (path.begin, path.end) if scene.presses_anew else (path.begin,) * 2
     first, second = (
         StressState(each, (), *load.along[point][1:]) for each, point in zip(contacts, load.ends, strict=True)
     )
@@ -152,15 +156,13 @@ def _ends(scene: Scene) -> tuple[StressState, StressState]:
 class _Constant:
     """Ways under constant pressure."""
 
-    scene: Scene
-    pressed: Contact
-    cycle: Loading | Turning
+    load: Load
+    found: Levels
 
     def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
-        load, f = self.scene.load, self.pressed.f
+        load, cycle, pressed = self.load, self.found.cycle, self.found.pressed
         loads = share * load.dQ, share * load.dsigma, share * load.dslope
-        cycle, pressed = self.cycle, self.pressed
-        change = cycle.part(share) if isinstance(cycle, Turning) else loading(pressed, f, *loads, bound=2)
+        change = cycle.part(share) if isinstance(cycle, Turning) else loading(pressed, pressed.f, *loads, bound=2)
         return pressed, ((-2.0 if back else 2.0, half_of(pressed, change, *loads[1:])),)
 
 
@@ -168,10 +170,10 @@ class _Constant:
 class _Varying:
     """Ways under varying pressure."""
 
-    scene: Scene
+    ways: Ways
 
     def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
-        path = PressurePath(self.scene, back)
+        path = self.ways[back]
         now, mean, change = path.stage(share)
         return now, ((2.0, Shear.of(mean, change, share * path.dsigma, share * path.dslope)),)
 
@@ -180,10 +182,10 @@ class _Varying:
 class _Pressed:
     """Ways without shear."""
 
-    scene: Scene
+    ways: Ways
 
     def __call__(self, *, back: bool, share: float) -> tuple[Contact, _Sum]:
-        return PressurePath(self.scene, back).at(share), ()
+        return self.ways[back].at(share), ()
 
 
 def _merged(shears: _Sum) -> _Sum:

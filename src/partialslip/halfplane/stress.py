@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.halfplane.cauchy import Cauchy
+from partialslip.halfplane.change import Change
 from partialslip.halfplane.contact import Contact, one_step_zone
 from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.tractions import sample
-from partialslip.halfplane.turning import Followed, PartOfWay, Reached, Turning, half_cycle
+from partialslip.halfplane.turning import Turned, Turning, half_cycle
 from partialslip.result import StickZone, SurfaceStress
 from partialslip.result.below import under_pressure, under_shear, under_tension
 from partialslip.result.fields import AtPoints
@@ -86,12 +87,12 @@ class Shear:
 
 
 @dataclass(frozen=True)
-class Turned:
+class TurnedShear:
     """Shear traction ``share`` times that of ``change``, in which slip has turned round on the way, under the bulk
     tension ``sigma`` (Pa)."""
 
     contact: Contact
-    change: PartOfWay | Reached | Followed
+    change: Turned
     share: float
     sigma: float
 
@@ -115,18 +116,19 @@ class Turned:
         return found + under_tension(self.sigma + 0 * at.x, 0.0, at.depth, at.side)
 
 
-def half_of(contact: Contact, change: Loading | Turning | PartOfWay, sigma: float, slope: float) -> Shear | Turned:
+def half_of(contact: Contact, change: Change | Turned, sigma: float, slope: float) -> Shear | TurnedShear:
     """Half of the shear of a ``change`` of a steady cycle, by the tension ``sigma`` and its ``slope``."""
     if isinstance(change, Loading):
         return Shear.of(contact, change, sigma, slope)
-    return Turned(contact, change.whole if isinstance(change, Turning) else change, 1 / 2, sigma / 2)
+    assert isinstance(change, Turning | Turned)
+    return TurnedShear(contact, change.whole if isinstance(change, Turning) else change, 1 / 2, sigma / 2)
 
 
-def reached(contact: Contact, first: Loading | Reached | Followed, sigma: float, slope: float) -> Shear | Turned:
+def reached(contact: Contact, first: Loading | Turned, sigma: float, slope: float) -> Shear | TurnedShear:
     """Shear at a load point, ``first`` reached under the tension ``sigma`` and its ``slope``."""
     if isinstance(first, Loading):
         return Shear.of(contact, first, sigma, slope)
-    return Turned(contact, first, 1.0, sigma)
+    return TurnedShear(contact, first, 1.0, sigma)
 
 
 @dataclass(frozen=True)
@@ -154,7 +156,7 @@ class SlipZones:
         return unit * under_shear(T, -at.depth / self.contact.a * T_z, at.side)
 
 
-Acting = Shear | Turned | SlipZones
+Acting = Shear | TurnedShear | SlipZones
 _Acting = Contact | Acting
 Integrals = dict[Cauchy, Complex]
 

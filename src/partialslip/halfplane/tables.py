@@ -3,9 +3,9 @@
 import numpy as np
 from msgspec.structs import replace
 
+from partialslip.halfplane.change import Change
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.loading import Loading
-from partialslip.halfplane.turning import Turning, half_cycle
+from partialslip.halfplane.turning import half_cycle
 from partialslip.scene import Scene, Tabulated
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
@@ -15,7 +15,7 @@ _FEWEST = 5  # limit: points of a table
 _NODES = 200  # accuracy: quadrature points of norms
 
 
-def table_error(scene: Scene, pressed: Contact, cycle: Loading | Turning | None) -> dict[str, float]:
+def table_error(scene: Scene, pressed: Contact, cycle: Change | None) -> dict[str, float]:
     """Estimate the error of a, m, n (fractions of a), p and q (relative L2) due to the spacing of a tabulated profile;
     of a contact that is not even, of its ``left`` and ``right`` end, too.
 
@@ -27,7 +27,7 @@ def table_error(scene: Scene, pressed: Contact, cycle: Loading | Turning | None)
     scene : Scene
     pressed : Contact
         The contact of ``scene``.
-    cycle : Loading, optional
+    cycle : Change, optional
         Change of the loads over half a cycle; None if the contact slides.
     """
     try:

@@ -5,9 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.halfplane.contact import Contact
-from partialslip.halfplane.levels import Levels
-from partialslip.halfplane.loading import Loading
-from partialslip.halfplane.turning import Turning
 from partialslip.result import TractionAt
 from partialslip.tools.arrays import Array
 
@@ -20,29 +17,6 @@ def sample(breaks: Array, most: int | None = None) -> Array:
     count = _POINTS if most is None else max(min(_POINTS, most // len(breaks)), _FEWEST)
     crowd = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
     return np.unique(breaks[:-1, None] + np.diff(breaks)[:, None] * crowd)
-
-
-@dataclass(frozen=True)
-class ExactTractions:
-    """Tractions of the steady state of the exact method.
-
-    The contact ``pressed``, the coefficient of friction ``f``, the change of shear traction over half a ``cycle`` (None
-    if nothing sticks) and ``levels``, the shear tractions at the load points (None if no closed form gives them).
-    """
-
-    pressed: Contact
-    f: float
-    cycle: Loading | Turning | None
-    levels: Levels | None
-
-    def at(self, x: Array) -> TractionAt:
-        """Tractions at ``x`` (m), Pa; zero outside the contact."""
-        p, scaled, unit = self.pressed.pressure(x), self.pressed.scaled(x), self.f * self.pressed.p0
-        dq = unit * self.cycle.traction(scaled) if self.cycle else np.zeros_like(p)
-        if not self.levels:
-            return TractionAt(p, dq)
-        q1, q2 = self.levels.at(scaled)
-        return TractionAt(p, dq, unit * q1, unit * q2)
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,16 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from partialslip.halfplane.change import Change
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.certificate import certificate_of
 from partialslip.halfplane.gradual_path.from_zero import MOST_LOADS, from_zero
 from partialslip.halfplane.gradual_path.gradual_mean_bound import gradual_mean_load_bound
 from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
-from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage
+from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.gradual_path.tractions import Tractions
 from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.slip import Worn
 from partialslip.halfplane.steady import UNEVEN_FRICTION
 from partialslip.result import StickZone
@@ -25,88 +25,58 @@ _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a s
 
 
 @dataclass(frozen=True)
-class Turning:
+class Turning(Change):
     """Half a steady cycle in which slip turns round: the change ``once`` of the loads in a single step, which does not
     hold, and the ``way`` of gradual loads, for positive changes."""
 
     once: Loading
     way: HalfCycle
 
-    holds = True
-    one_way = False
-
-    @property
-    def shape(self) -> Shape:
-        """Pressure."""
-        return self.once.shape
-
-    @property
-    def seen(self) -> Shape:
-        """Pressure over the mirrored x, on which both changes of the loads are positive."""
-        return self.once.seen
-
-    @property
-    def turn(self) -> int:
-        """-1 if dQ < 0."""
-        return self.once.turn
-
-    @property
-    def mirror(self) -> int:
-        """-1 if x is mirrored."""
-        return self.once.mirror
-
-    @property
-    def Qf(self) -> float:
-        """Change of the shear force, in 2 f P."""
-        return self.once.Qf
-
-    @property
-    def gf(self) -> float:
-        """Change of the tension along x."""
-        return 0.0
-
-    @property
-    def nothing(self) -> bool:
-        """Whether no load changes."""
-        return False
-
-    @cached_property
-    def zone(self) -> StickZone[float]:
-        """Stick zone of the tractions, \\|dq\\| < 2 p, for positive changes of both loads."""
-        left, right = self.way.last.zone
-        return StickZone((left + right) / 2, (right - left) / 2, self.way.sign)
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Left and right end of the zone of the tractions, for the signs of the loads."""
-        return replace(self.once, zone=self.zone).ends
+    @classmethod
+    def of(cls, once: Loading, way: HalfCycle) -> "Turning":
+        """The loads of ``once``, along the ``way``."""
+        left, right = way.last.zone
+        zone = StickZone((left + right) / 2, (right - left) / 2, way.sign)
+        return cls(once.shape, once.Qf, once.sf, once.turn, once.mirror, once.bound, zone, 0.0, once, way)
 
     @property
     def permanent(self) -> tuple[float, float] | None:
-        """Ends of the zone of points that never slip, for the signs of the loads; None if there are none."""
         return self.whole.stuck
-
-    def seen_from(self, interval: tuple[float, float]) -> tuple[float, float]:
-        """Ends of an ``interval`` of the mirrored x, or of x, on the other of both."""
-        left, right = interval
-        return (left, right) if self.mirror > 0 else (-right, -left)
 
     @property
     def breaks(self) -> list[float]:
-        """Places at which the change of traction is not smooth, ascending."""
         return self.whole.breaks
 
     @cached_property
-    def whole(self) -> "PartOfWay":
+    def whole(self) -> "Turned":
         """The change from load point to load point."""
         return self.part(1.0)
 
-    def part(self, share: float) -> "PartOfWay":
+    def part(self, share: float) -> "Turned":
         """The change up to a ``share`` of the loads."""
-        return PartOfWay(self, self.way.at(share))
+        at = self.way.at(share)
+        left, right = self.way.stuck_until(at)
+        return Turned(self.turn, self.mirror, at.q, self.way.start, (left, right) if left < right else None)
+
+    @property
+    def reached(self) -> "Turned":
+        """Shear traction at load point 2, where all points slip."""
+        return replace(self.whole, never=None, factor=1 / 2)
+
+    def from_zero(self, shear: float, tension: float, cycles: int | None = None) -> "Turned":
+        """Shear traction at load point 2 after loads that begin at zero: to load point 2, with ``shear`` (in f p0 a)
+        and ``tension`` (in f p0), and then through so many ``cycles``, by default until q repeats.
+
+        Raises
+        ------
+        LostError
+            If the way is not known.
+        """
+        first = Loads(self.turn * self.mirror * tension, self.turn * shear)
+        q, never = from_zero(first, self.way, cycles or MOST_LOADS)
+        return Turned(self.turn, self.mirror, q, None, never)
 
     def traction(self, x: Array) -> Array:
-        """Change of shear traction at ``x``, in f p0."""
         return self.whole.traction(x)
 
     @cached_property
@@ -130,93 +100,44 @@ class Turning:
 
     @cached_property
     def worn(self) -> Worn:
-        """Slip over half a cycle, and the energy that a cycle dissipates."""
         return slips(self.way).turned(self.mirror, self.turn)
 
 
 @dataclass(frozen=True, eq=False)
-class PartOfWay:
-    """Change of shear traction in a ``cycle`` from load point 1 up to the stage ``at`` a share of the loads."""
+class Turned:
+    """Shear traction where slip has turned round: ``factor`` times the tractions ``q`` less those ``before`` (None:
+    zero), and the ends of the interval of points that have ``never`` slipped (None if there are none), for positive
+    changes of the loads; ``turn`` and ``mirror`` as of :class:`Turning`."""
 
-    cycle: Turning
-    at: Stage
-
-    @property
-    def breaks(self) -> list[float]:
-        """Places at which the change is not smooth, ascending."""
-        inner = {*self.at.q.breaks, *self.cycle.way.start.breaks}
-        return sorted(self.cycle.mirror * each for each in inner)
-
-    @property
-    def stuck(self) -> tuple[float, float] | None:
-        """Ends of the zone of points that have not slipped, for the signs of the loads; None if there are none."""
-        left, right = self.cycle.way.stuck_until(self.at)
-        return self.cycle.seen_from((left, right)) if left < right else None
-
-    def traction(self, x: Array) -> Array:
-        """Change of shear traction at ``x``, in f p0."""
-        way, seen = self.cycle.way, self.cycle.mirror * x
-        return self.cycle.turn * (self.at.q(seen) - way.start(seen))
-
-
-@dataclass(frozen=True, eq=False)
-class Reached:
-    """Shear traction at load point 2 of a ``cycle`` in which all points slip."""
-
-    cycle: Turning
-
-    stuck = None
-
-    @property
-    def breaks(self) -> list[float]:
-        """Places at which the traction is not smooth, ascending."""
-        return self.cycle.breaks
-
-    def traction(self, x: Array) -> Array:
-        """q at ``x``, in f p0."""
-        return self.cycle.traction(x) / 2
-
-
-@dataclass(frozen=True, eq=False)
-class Followed:
-    """Shear traction at load point 2 of a ``cycle`` after loads that begin at zero: ``q``, and the ends of the interval
-    that has ``never`` slipped (None if every point has), both for positive changes of the loads."""
-
-    cycle: Turning
+    turn: int
+    mirror: int
     q: Tractions
+    before: Tractions | None
     never: tuple[float, float] | None
-
-    @classmethod
-    def from_zero(cls, cycle: Turning, shear: float, tension: float, cycles: int | None = None) -> "Followed":
-        """Follow the loads to load point 2, with ``shear`` (in f p0 a) and ``tension`` (in f p0), and then through so
-        many ``cycles``, by default until q repeats.
-
-        Raises
-        ------
-        LostError
-            If the way is not known.
-        """
-        first = Loads(cycle.turn * cycle.mirror * tension, cycle.turn * shear)
-        return cls(cycle, *from_zero(first, cycle.way, cycles or MOST_LOADS))
+    factor: float = 1.0
 
     @property
     def breaks(self) -> list[float]:
-        """Places at which the traction is not smooth, ascending."""
-        return sorted(self.cycle.mirror * each for each in self.q.breaks)
+        """Places at which it is not smooth, ascending."""
+        return sorted(self.mirror * each for each in {*self.q.breaks, *(self.before.breaks if self.before else ())})
 
     @property
     def stuck(self) -> tuple[float, float] | None:
         """Ends of the zone of points that have never slipped, for the signs of the loads; None if there are none."""
-        return self.cycle.seen_from(self.never) if self.never else None
+        if not self.never or self.mirror > 0:
+            return self.never
+        left, right = self.never
+        return -right, -left
 
     def traction(self, x: Array) -> Array:
-        """q at ``x``, in f p0."""
-        return self.cycle.turn * self.q(self.cycle.mirror * x)
+        """Shear traction at ``x``, in f p0."""
+        q = self.q(self.mirror * x)
+        return self.factor * self.turn * (q - self.before(self.mirror * x) if self.before else q)
 
 
 def half_cycle(
     pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, parts: bool = True
-) -> Loading | Turning:
+) -> Change:
     """Half a steady cycle between loads that change by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m), of any
     sign, with |dQ| < 2 f P. Where slip turns round and the gradual way is not known, the single step, which does not
     hold (:attr:`Loading.holds`). Without ``parts`` a slip zone inside the stick zone is not followed, and the way has
@@ -235,7 +156,7 @@ def half_cycle(
         sure = not parts or (not way.parted and pressed.friction_bound.convex)
         holds = sure or certificate_of(way).worst < _HELD
         if holds:
-            return Turning(once, way)
+            return Turning.of(once, way)
     except LostError:
         pass
     if once.parts:

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from partialslip.halfplane.contact import Contact
-from partialslip.halfplane.loading import Loading, loading
-from partialslip.halfplane.mean_pressure import Mean, PressurePath, PressureStage, common
-from partialslip.halfplane.slip import Worn, dissipation
+from partialslip.halfplane.loading import Loading
+from partialslip.halfplane.mean_pressure import Mean, PressurePath, PressureStage, Ways, common
+from partialslip.halfplane.slip import dissipation
 from partialslip.halfplane.steady import admissible
-from partialslip.result import EndSlip
+from partialslip.result import EndSlip, Regime, Slip
 from partialslip.scene import Hertz, Scene
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
@@ -31,19 +31,20 @@ _SHARES = (1 - np.cos(np.linspace(0, np.pi, 14)))[1:-1] / 2  # of the way, at wh
 _ALONG = 32  # accuracy: stages of a way at which q is within its bounds
 _PANELS = 16  # accuracy: of the stick zone, on which bounds along the way are integrated
 _PLACES = np.cos(np.linspace(np.pi, 0, 401))[1:-1]
+_ROOM = 1e-12  # accuracy: of Q, in f P, beyond the bounds that is rounding
 
 
 @dataclass(frozen=True)
 class Cycle:
-    """A steady cycle between load points 1 and 2.
+    """A steady cycle under varying pressure.
 
     Parameters
     ----------
     scene : Scene
-    first, second : Contact
-        Contacts at load points 1 and 2.
+    ways : two PressurePath
+        From load point 1 to 2, and back.
     mean : Contact
-        The union of both, under the mean pressure.
+        The union of the contacts at both load points, under the mean pressure.
     change : Loading or None
         Change of shear from load point 1 to 2; None where no end slips.
     slips : two EndSlip
@@ -54,12 +55,21 @@ class Cycle:
     """
 
     scene: Scene
-    first: Contact
-    second: Contact
+    ways: Ways
     mean: Contact
     change: Loading | None
     slips: tuple[EndSlip, EndSlip]
-    turns_round: bool
+    turns_round: bool = False
+
+    @property
+    def first(self) -> Contact:
+        """Contact at load point 1."""
+        return self.ways[0].begin
+
+    @property
+    def second(self) -> Contact:
+        """Contact at load point 2."""
+        return self.ways[0].end
 
     @property
     def stick(self) -> tuple[float, float]:
@@ -68,10 +78,22 @@ class Cycle:
             return PressureStage(self.second, self.mean, self.change).stick
         return common(self.first, self.second)
 
+    @property
+    def regime(self) -> Regime:
+        """Regime of the cycle; the mean of Q is known to rounding."""
+        point, _ = self.scene.load.ends
+        low, high = self.bounds_of_Q1
+        room = _ROOM * self.scene.friction.f * self.scene.P
+        if not low - room <= self.scene.load.points[point][0] <= high + room:
+            return "ratchets"
+        if self.change is None:
+            return "no slip"
+        return "small tension" if self.change.zone.s > 0 else "large tension"
+
     def dq(self, x: Array) -> Array:
         """Change of shear traction at ``x`` (m), Pa."""
         if self.change:
-            return self.scene.friction.f * self.mean.p0 * self.change.traction(self.mean.scaled(x))
+            return self.change.within(self.mean, self.scene.friction.f, x)
         load, (one, other) = self.scene.load, (self.first, self.second)
         if load.dQ == 0 and load.dsigma == 0 and load.dslope == 0:
             return np.zeros(np.shape(x))
@@ -104,10 +126,7 @@ class Cycle:
         first, second = (f * self.first.pressure(x), 0 * x), (f * self.second.pressure(x), dq)
 
         def between(stages: list[PressureStage], before: Array) -> list[tuple[Array, Array]]:
-            return [
-                (f * now.pressure(x), before + f * mean.p0 * change.traction(mean.scaled(x)))
-                for now, mean, change in stages
-            ]
+            return [(f * now.pressure(x), before + change.within(mean, f, x)) for now, mean, change in stages]
 
         forth, back = self._stages
         ways = [first, *between(forth, 0 * x), second], [second, *between(back, dq), first]
@@ -119,24 +138,21 @@ class Cycle:
         """Stages between the load points, from 1 to 2 and back; none where there is no slip or slip reverses."""
         if not self.change or self.turns_round:
             return [], []
-        forth, back = (
-            [PressurePath(self.scene, way).stage(share) for share in (np.arange(1, _ALONG) / _ALONG).tolist()]
-            for way in (False, True)
-        )
+        forth, back = ([way.stage(share) for share in (np.arange(1, _ALONG) / _ALONG).tolist()] for way in self.ways)
         return forth, back
 
     @property
     def _kinks(self) -> list[float]:
         return self.mean.places(self.mean.shape.kinks).tolist()
 
-    def slip(self) -> Worn:
-        """Points (m), their slip from load point 1 to 2 (m) while they are in contact, and the work dissipated in a
-        cycle (J/m), with its error.
+    def slip(self) -> Slip | None:
+        """Slip of points while they are in contact; the error of its work is not known where slip reverses on the way.
 
         A part of the surfaces that slips under the pressure p does the work f p for each length of slip. On the way
         from one load point to the other this is f p s at the end of the way, less the integral of s f dp.
         """
-        assert self.change
+        if not self.change:
+            return None
         unit = self._unit(self.mean)
         worn = dissipation(self.change.zone, self.change.seen, self.change.gf)
         worn = worn.turned(self.change.mirror, self.change.turn)
@@ -145,9 +161,8 @@ class Cycle:
         inside = (x > low) & (x < high)
         ends = np.array([low, high])
         x, slips = np.append(x[inside], ends), np.append(slips[inside], unit * self.change.slip(self.mean.scaled(ends)))
-        path = PressurePath(self.scene)
         for share in _SHARES.tolist():  # points that touch or open on the way
-            now, mean, part = path.stage(share)
+            now, mean, part = self.ways[0].stage(share)
             places = np.array(now.ends)
             places = places[(places < low) | (places > high)]
             so_far = self._unit(mean) * part.slip(mean.scaled(places))
@@ -158,19 +173,18 @@ class Cycle:
             )
         order = np.argsort(x)
         work, other = (
-            sum(self._dissipated(back, *counts) for back in (False, True))
-            for counts in zip(_STEPS, _BETWEEN, strict=True)
+            sum(self._dissipated(way, *counts) for way in self.ways) for counts in zip(_STEPS, _BETWEEN, strict=True)
         )
-        return Worn(x[order], slips[order], work, abs(work - other))
+        return Slip(x[order], slips[order], work, None if self.turns_round else abs(work - other))
 
     def _unit(self, mean: Contact) -> float:
         """Unit of slip under the pressure of ``mean``, m."""
         return self.scene.material.A * self.scene.friction.f * mean.p0 * mean.a
 
-    def _dissipated(self, back: bool, count: int, fewest: int) -> float:
-        """Work on the way to load point 2, or ``back`` to 1: by ``count`` points a way and a slip zone, the ``fewest``
-        at least between kinks."""
-        path, f = PressurePath(self.scene, back), self.scene.friction.f
+    def _dissipated(self, path: PressurePath, count: int, fewest: int) -> float:
+        """Work on the way along the ``path``: by ``count`` points a way and a slip zone, the ``fewest`` at least
+        between kinks."""
+        f = self.scene.friction.f
 
         def slipped(stage: PressureStage, weight: Callable[[Array, Array], Array]) -> float:
             """Integral over the contact of |slip| since the beginning of the way, times the ``weight``."""
@@ -202,26 +216,23 @@ class Cycle:
 @functools.lru_cache(maxsize=1)
 def steady_cycle(scene: Scene) -> Cycle:
     """The steady cycle of ``scene``, whose pressure varies, with friction and without sliding, under loads in phase."""
-    path, f = PressurePath(scene), scene.friction.f
-    first, second = path.begin, path.at(1.0)
+    ways, f = PressurePath.both(scene), scene.friction.f
+    path = ways[0]
+    first, second = path.begin, path.end
     mean = Mean(first, second).contact
     left, right = common(first, second)
-    rates = _exceeds(path, f)
-    loads = path.dQ, path.dsigma, path.dslope
-    change = loading(mean, f, *loads, bound=2) if left < right and rates.any() else None
-    if not change:
-        slips: tuple[EndSlip, EndSlip] = ("never", "never") if left < right else ("part of the cycle",) * 2
-        return Cycle(scene, first, second, mean, None, slips, False)
-    ends, room = PressureStage(second, mean, change).stick, _ROUNDING * mean.a
-    ways: list[EndSlip] = ["forwards" if sign > 0 else "backwards" for sign in change.signs]
+    if not (left < right and _exceeds(path, f).any()):
+        return Cycle(scene, ways, mean, None, ("never" if left < right else "part of the cycle",) * 2)
+    last = path.stage(1.0)
+    change, ends, room = last.change, last.stick, _ROUNDING * mean.a
+    told: list[EndSlip] = ["forwards" if sign > 0 else "backwards" for sign in change.signs]
     inside = left - room <= ends[0], ends[1] <= right + room
     if all(inside) and not admissible(change.zone, change.seen, change.gf):
         inside = False, False
-    slips = (ways[0] if inside[0] else "part of the cycle", ways[1] if inside[1] else "part of the cycle")
+    slips = (told[0] if inside[0] else "part of the cycle", told[1] if inside[1] else "part of the cycle")
     if not all(inside):
-        return Cycle(scene, first, second, mean, None, slips, False)
-    turns = any(_turns(PressurePath(scene, back), f, change) for back in (False, True))
-    return Cycle(scene, first, second, mean, change, slips, turns)
+        return Cycle(scene, ways, mean, None, slips)
+    return Cycle(scene, ways, mean, change, slips, any(_turns(way, f, change) for way in ways))
 
 
 def closed_form(scene: Scene) -> str:

@@ -10,9 +10,8 @@ from partialslip.friction.history import Steps
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.stress import Fields, Integrals, Points, SlipZones, StressState
 from partialslip.march.pressing import NormalLoads
-from partialslip.result.below import under_shear
+from partialslip.result.below import PiecewiseCauchy, under_shear
 from partialslip.result.phases import Phases
-from partialslip.result.piecewise import PiecewiseCauchy
 from partialslip.tools.arrays import Array, Complex, Mask
 
 _SLIPS = 1e-9  # accuracy: distance of |q| from f p, relative, at which a cell slips

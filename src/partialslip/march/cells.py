@@ -1,10 +1,13 @@
 """Cells of constant shear traction on two half-planes, and the compliance of the cells. Scaled so that A = 1."""
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator, PPoly
 
+from partialslip.friction.contact_line import ContactLine
+from partialslip.friction.zone_ends import apart
 from partialslip.halfplane.shape import Shape
 from partialslip.scene import Friction
 from partialslip.tools.arrays import Array
@@ -12,7 +15,54 @@ from partialslip.tools.arrays import Array
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 # accuracy: distance, in widths of the wider cell, within which pairs of cells are integrated in closed form
 _NEAR = 4.0
+NEAR_ENDS = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
+_SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
+AT_KINKS = 8.0  # cost: size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
+_PASSING = 32.0  # cost: the same at kinks that neither q1 nor q2 has
 _ROWS = 64  # cost: rows of the compliance at once, whose parts fit into the memory of the processor
+
+
+def contact_line(vertices: Array, beta: float = 0.0) -> ContactLine:
+    """The line of the cells between ``vertices`` (c + 1,), for Dundurs' ``beta``."""
+    return ContactLine((vertices[1:] + vertices[:-1]) / 2, np.diff(vertices), vertices, beta)
+
+
+def cells_around(
+    ends: Sequence[float],
+    mesh: tuple[float, float],
+    a: float = 1.0,
+    kinks: Sequence[float] = (),
+    passing: Sequence[float] = (),
+    bends: Sequence[float] = (),
+    at_bends: float = AT_KINKS,
+    outer: Sequence[tuple[float, float]] = (),
+) -> Array:
+    """Ends of cells (c + 1,) of a ``mesh``, the size of cells at the ``ends`` of zones, in the half-width ``a``, and
+    growth; cells are larger at ``kinks`` of q, and the largest at those that are ``passing``.
+
+    Cells are small compared with the distance of neighbouring ends: q is steep in narrow slip zones and stick zones.
+    Each of the ``bends`` of the coefficient of friction is an end of a cell, and as many cells as the growth tells lie
+    between two of them: no dip is left out. There cells have at most ``at_bends`` times the size at the ends. ``outer``
+    are further points, and sizes of cells there.
+    """
+    size, growth = mesh
+    fine = apart(ends, _SMALLEST * a)
+    bends = apart(bends, _SMALLEST * a, fine)[len(fine) :]
+    known = [*fine, *bends]
+    coarser = apart(kinks, AT_KINKS * size * a, fine)[len(fine) :]
+    known += coarser
+    passing = apart(passing, _PASSING * size * a, known)[len(known) :]
+    gap = nearest(np.array([*fine, *bends])) / a
+    sizes = (
+        np.maximum(size * np.minimum(NEAR_ENDS * gap[: len(fine)], 1.0), _SMALLEST),
+        np.minimum(at_bends * size, growth * gap[len(fine) :]),
+        np.full(len(coarser), AT_KINKS * size),
+        np.full(len(passing), _PASSING * size),
+    )
+    points = np.array([*known, *passing, *(point for point, _ in outer)])
+    every = np.concatenate([np.concatenate(sizes) * a, [size for _, size in outer]])
+    order = np.argsort(points)
+    return graded_cells(points[order], every[order], growth)
 
 
 def graded_cells(points: Array, size: float | Array, growth: float) -> Array:
@@ -72,19 +122,6 @@ def off_cells(forces: Array, places: Array) -> PPoly:
     """
     resultant = PchipInterpolator(places, np.concatenate([[0.0], np.cumsum(forces)])).derivative()
     return PPoly(resultant.c, places)
-
-
-def norm_parts(vertices: Array, loads: Array, cells: Array) -> Array:
-    """Parts (c,) of the L2 norm of the means over ``cells`` (c + 1,) of forces ``loads`` (n,) between ``vertices``
-    (n + 1,)."""
-    resultant = np.concatenate([[0.0], np.cumsum(loads)])
-    return np.diff(np.interp(cells, vertices, resultant)) / np.sqrt(np.diff(cells))
-
-
-def relative_change(found: Array, others: Array, least: float) -> float:
-    """L2 distance of two traction's :func:`norm_parts`, relative to the norm of ``found`` or to the ``least`` one."""
-    size = max(float(np.linalg.norm(found)), least)
-    return float(np.linalg.norm(others - found)) / size if size > 0 else 0.0
 
 
 def forces(shape: Shape, vertices: Array) -> Array:

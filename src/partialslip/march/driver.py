@@ -4,15 +4,14 @@ Each of these problems solves p and q on given cells, tells the errors of these 
 Scaled: lengths by the unit of the problem, forces by P, displacements by A P.
 """
 
-import math
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from abc import abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Generic, TypeVar
 
 import numpy as np
 
-from partialslip.friction.history import SHEARS, History
+from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
 from partialslip.friction.regime import doubts
 from partialslip.friction.restart import begun, end_state
@@ -21,11 +20,18 @@ from partialslip.friction.work import work, work_error
 from partialslip.friction.zone_ends import StickInterval
 from partialslip.march.cells import off_cells, on_cells
 from partialslip.result import Clock, Pace, Result, Slip, SteadyState, Traction
+from partialslip.result.refining import OnMesh, Refinable, refine
 from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip.tools.arrays import Array, Indices
 from partialslip.tools.bars import BARS
 
+# accuracy: growth of cells, mesh by mesh: sqrt(2), for :meth:`CellProblem.mesh_errors`. On the first mesh nothing is
+# known of the stick zone; out of phase the second one is to find it, too
+_GROWTHS = (0.28, 0.28, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 0.0175)
+MESHES = tuple((4e-3 * growth, growth) for growth in _GROWTHS)  # accuracy: (cell size at the ends, in a; growth)
+COARSE = 3  # accuracy: of these, before the first one whose errors are estimated
+_TIMES = 2.0  # accuracy: errors over changes (measured: benchmarks/estimates.py)
 _LEFT = 3.0  # cost: times the seconds of the next mesh that must be left: finite elements follow in the same run
 
 
@@ -86,20 +92,38 @@ class LastLevel:
     notes: tuple[str, ...] = ()
 
 
-class CellProblem(ABC, Generic[L]):
+@dataclass(frozen=True)
+class Refined(OnMesh, Generic[L]):
+    """A ``level`` and the one ``before`` it, and its errors: those ``meshed`` are due to the cells, those ``stepped``
+    to the load steps."""
+
+    level: L
+    before: L | None
+    meshed: Errors = field(default_factory=Errors)
+    stepped: Errors = field(default_factory=Errors)
+
+    @property
+    def unknowns(self) -> str:
+        return f"{len(self.level.vertices) - 1:,} cells"
+
+    @property
+    def errors(self) -> Errors:
+        return {key: error + self.stepped.get(key, 0.0) for key, error in self.meshed.items()}
+
+    @property
+    def shares(self) -> dict[str, Errors]:
+        """Errors by what they are due to."""
+        return {name: each for name, each in (("discretisation", self.meshed), ("steps", self.stepped)) if each}
+
+
+class CellProblem(Refinable[Refined[L]]):
     """Bodies that are pressed together and sheared, on cells.
 
-    ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``meshes`` are the
-    sizes of the cells at the ends of zones, in a, and their growth; on the first ``coarse`` ones ends are only found.
-    ``telling`` are the keys of the errors that the line on a mesh tells. ``steps_count``: whether the errors of load
-    steps leave less to those of the cells. ``nearly``: excess of errors up to which the following mesh is halfway to
-    the next one of ``meshes``; the second number is for errors of q, q1 and q2 on later meshes.
+    ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``steps_count``:
+    whether the errors of load steps leave less to those of the cells.
     """
 
-    coarse = 1
     steps_count = True
-    nearly = 0.0, 0.0
-    telling: tuple[str, ...]
 
     def __init__(
         self,
@@ -108,11 +132,10 @@ class CellProblem(ABC, Generic[L]):
         clock: Clock,
         path: Path | None,
         frame: tuple[float, float],
-        meshes: Sequence[tuple[float, float]],
     ) -> None:
         self.scene, self.start, self.clock, self.path = scene, start, clock, path
         self.origin, self.length = frame
-        self.meshes = meshes
+        self.iterations = 0
 
     def places(self, level: L) -> Array:
         """Ends of the cells, m."""
@@ -127,8 +150,17 @@ class CellProblem(ABC, Generic[L]):
         """Solve on the ``mesh`` after that of the ``level``."""
 
     @abstractmethod
-    def mesh_errors(self, level: L, before: L) -> Errors:
-        """Errors due to the cells of the ``level``, of ends in a and of tractions relative L2."""
+    def changes(self, level: L, other: L) -> Errors:
+        """Changes from the ``other`` level to this one, of ends in a and of tractions relative L2."""
+
+    def mesh_errors(self, level: L, before: L, earlier: L) -> Errors:
+        """Errors due to the cells of the ``level``: twice the changes since the level ``before``, whose cells are
+        sqrt(2) times as large, and no less than the changes since the ``earlier`` one, whose cells are twice as large.
+
+        An error C h^s changes by 2^(s/2) - 1 and 2^s - 1 of what is left of it: by all of it at s = 2 and s = 1.
+        """
+        late, early = self.changes(level, before), self.changes(level, earlier)
+        return {key: max(_TIMES * late[key], early.get(key, 0.0)) for key in late}
 
     @abstractmethod
     def step_errors(self, level: L) -> Errors:
@@ -138,18 +170,29 @@ class CellProblem(ABC, Generic[L]):
         """Whether a mesh with ``count`` ends of cells after that of the ``level`` is out of proportion."""
         return False
 
-    def excess(self, meshed: Errors, stepped: Errors) -> Errors:
-        """Errors ``meshed`` over what is allowed: at most 1 if finer cells are not needed, or of no use: they do not
-        reduce the error of load steps."""
-        allowed = {key: BARS[key] * self.scene.fem.accuracy for key in meshed}
-        lost = stepped if self.steps_count else {}
-        return {key: meshed[key] / max(most - lost.get(key, 0.0), most / 2) for key, most in allowed.items()}
+    def refined(self, before: Refined[L] | None) -> Refined[L]:
+        last, earlier = (before.level, before.before) if before else (None, None)
+        level = self.solve(last, MESHES[self.meshes])
+        self.meshes += 1
+        self.iterations += level.history.iterations if level.history else 0
+        if not last or not earlier or self.meshes <= COARSE:
+            return Refined(level, last)
+        return Refined(level, last, self.mesh_errors(level, last, earlier), self.step_errors(level))
 
-    def nears(self, excess: Errors, later: bool) -> bool:
-        """Whether errors exceed what is allowed by so little that a mesh halfway to the next one is likely to do;
-        ``later``: not on the first mesh whose errors are known."""
-        most, of_shear = self.nearly
-        return all(each <= (of_shear if later and key in SHEARS else most) for key, each in excess.items())
+    def finished(self, found: Refined[L]) -> bool:
+        if self.meshes == len(MESHES) or (found.errors and max(self._excess(found).values()) <= 1):
+            return True
+        return self.too_large(found.level, len(self.cells(found.level, MESHES[self.meshes])))
+
+    def fits(self, pace: Pace, found: Refined[L]) -> bool:
+        return not found.errors or pace.fits(_LEFT)
+
+    def _excess(self, found: Refined[L]) -> Errors:
+        """Errors due to the cells over what is allowed: at most 1 if finer cells are not needed, or of no use: they do
+        not reduce the error of load steps."""
+        allowed = {key: BARS[key] * self.scene.fem.accuracy for key in found.meshed}
+        lost = found.stepped if self.steps_count else {}
+        return {key: found.meshed[key] / max(most - lost.get(key, 0.0), most / 2) for key, most in allowed.items()}
 
     @abstractmethod
     def answer(self, level: L) -> LastLevel:
@@ -158,74 +201,29 @@ class CellProblem(ABC, Generic[L]):
 
 def march(problem: CellProblem[L], progress: Callable[[str], None]) -> tuple[Result, L]:
     """Solve ``problem`` on finer and finer cells, until the errors are as small as the scene asks for, or the next
-    mesh does not fit the allowance of its clock; errors are estimated in any case. Returns the result, and the last
-    level."""
-    level: L | None = None
-    before: L | None = None
-    clock, errors = problem.clock, Errors()
-    shares: dict[str, Errors] = {}
-    meshes, iterations, pace = 0, 0, Pace(clock)
-    place, last = 0.0, len(problem.meshes) - 1
-    while True:
-        mesh = _mesh_at(problem.meshes, place)
-        spent = bool(errors) and not pace.fits(_LEFT)
-        if level and (spent or problem.too_large(level, len(problem.cells(level, mesh)))):
-            break
-        before, level = level, problem.solve(level, mesh)
-        meshes += 1
-        pace.took()
-        iterations += level.history.iterations if level.history else 0
-        halfway = False
-        if before and meshes > problem.coarse:
-            meshed, stepped = problem.mesh_errors(level, before), problem.step_errors(level)
-            shares = {"discretisation": meshed} | ({"steps": stepped} if stepped else {})
-            errors = {key: error + stepped.get(key, 0.0) for key, error in meshed.items()}
-            known = max(errors[key] for key in problem.telling)
-            cells = f"{len(level.vertices) - 1:,} cells"
-            progress(f"mesh {meshes}: {cells}, {', '.join(problem.telling)} known to {known:.1e} a")
-            excess = problem.excess(meshed, stepped)
-            if max(excess.values()) <= 1:
-                break
-            halfway = place % 1 == 0 and problem.nears(excess, meshes > problem.coarse + 1)
-        if place == last:
-            break
-        place = place + 0.5 if halfway else math.floor(place) + 1
-    widths, places, scene = np.diff(level.vertices), problem.places(level), problem.scene
-    lost, notes = begun(errors, level.history, widths, problem.start, lambda state: on_cells(state.p, places) / scene.P)
+    mesh does not fit the allowance of its clock; errors are estimated in any case. Returns the result, and the
+    level that it is of."""
+    found = refine(problem, progress)
+    return _result(problem, found), found.level
+
+
+def _result(problem: CellProblem[L], found: Refined[L]) -> Result:
+    scene, level, errors, shares = problem.scene, found.level, found.errors, found.shares
+    history, answer, places = level.history, problem.answer(level), problem.places(level)
+    accuracy, traction, widths = scene.fem.accuracy, answer.traction, np.diff(level.vertices)
+    lost, notes = begun(errors, history, widths, problem.start, lambda state: on_cells(state.p, places) / scene.P)
     if lost:
         shares["start"] = lost
         errors = {key: error + lost.get(key, 0.0) for key, error in errors.items()}
-    counts = {"meshes": meshes, "iterations": iterations}
-    other = before.history if before and errors else None
-    return _result(problem, level, other, errors, shares, counts, notes), level
-
-
-def _mesh_at(meshes: Sequence[tuple[float, float]], place: float) -> tuple[float, float]:
-    """Size and growth at a ``place`` in ``meshes``, between two of them their geometric mean."""
-    (size, growth), (finer, less) = meshes[math.floor(place)], meshes[math.ceil(place)]
-    return math.sqrt(size * finer), math.sqrt(growth * less)
-
-
-def _result(
-    problem: CellProblem[L],
-    level: L,
-    other: History | None,
-    errors: Errors,
-    shares: Mapping[str, Errors],
-    counts: Mapping[str, int],
-    notes: tuple[str, ...],
-) -> Result:
-    scene, history, answer = problem.scene, level.history, problem.answer(level)
-    accuracy, traction = scene.fem.accuracy, answer.traction
     if answer.found.centre is None:
         errors = {key: error for key, error in errors.items() if key not in ("m", "n")}
-    found = answer.found.placed(problem.origin, problem.length)
+    zones = answer.found.placed(problem.origin, problem.length)
     unit = scene.material.A * scene.P  # of displacement
     state = slip = None
     if history:
-        places = problem.places(level)
         p, q = (off_cells(scene.P * forces, places) for forces in (answer.pressed, history.end[0]))
-        state = end_state(scene, p, q, errors, history, np.diff(level.vertices))
+        state = end_state(scene, p, q, errors, history, widths)
+        other = found.before.history if found.before and errors else None
         off, energy = work_error(history, other, errors), unit * scene.P
         slip = Slip(
             traction.x,
@@ -234,24 +232,25 @@ def _result(
             None if off is None else off * energy,
         )
     return replace(
-        Result.of("march", found, answer.a, answer.p0, traction, problem.clock),
+        Result.of("march", zones, answer.a, answer.p0, traction, problem.clock),
         state=state,
         slip=slip,
         settings={"model": answer.model, "accuracy": accuracy},
         counts={
-            "cells": len(level.vertices) - 1,
-            "tangential_unknowns": len(level.vertices) - 1 if history else 0,
+            "cells": len(widths),
+            "tangential_unknowns": len(widths) if history else 0,
             "cycles": history.cycles if history else 0,
             "load_steps": history.load_steps if history else 0,
             "steps": history.path.most_steps if history else 0,
             "opposing_nodes": history.opposing if history else 0,
-            **counts,
+            "meshes": problem.meshes,
+            "iterations": problem.iterations,
             **answer.counts,
         },
         certificate=answer.certificate,
         last_cycle_change=answer.change,
         estimate=errors,
         shares=shares,
-        notes=found.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),
+        notes=zones.notes + notes + answer.notes + doubts(answer.change, errors, accuracy),
         contact_ends=answer.contact_ends,
     )

@@ -3,7 +3,6 @@
 Shear is constant on cells, refined towards the ends of the contact and of the computed stick zone.
 """
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -11,28 +10,26 @@ from functools import partial
 import numpy as np
 
 from partialslip.friction import coulomb_constant_pressure, coulomb_varying_pressure
-from partialslip.friction.active_set import spread
-from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
-from partialslip.friction.load_path import Path, load_path, stretched
-from partialslip.friction.regime import permanent_zone, steady_state
+from partialslip.friction.contact_line import passing
+from partialslip.friction.history import certificate, last_cycle_change
+from partialslip.friction.load_path import load_path, stretched
+from partialslip.friction.regime import steady_state
 from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
-from partialslip.friction.zone_ends import StickInterval, apart, finest, kinks, read_stick_zone, sticking_zones, within
+from partialslip.friction.zone_ends import finest, sticking_zones
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
 from partialslip.halfplane.stress import SURFACE_REACH, along_surface
 from partialslip.halfplane.tractions import CellTractions
-from partialslip.march import driver
+from partialslip.march import changes, driver
 from partialslip.march.cell_stress import CellStresses
 from partialslip.march.cells import (
+    cells_around,
     compliance,
+    contact_line,
     friction_on,
-    graded_cells,
-    nearest,
-    norm_parts,
     on_cells,
-    relative_change,
 )
 from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
@@ -41,41 +38,10 @@ from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip.scene.plan import Plan
 from partialslip.tools.arrays import Array
-from partialslip.tools.bars import LEAST_SHEAR
 
-_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (1e-4, 0.05), (1e-5, 0.025))  # accuracy: (cell size at the ends, in a; growth)
-_CELLS, _SOMEWHERE = 4.0, 0.5  # accuracy: a zone of fewer cells is unresolved: the error of an end in cells
-_NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
-_SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
-_INNER = 8.0  # cost: size of cells at kinks of q over the size at the ends: kinks hardly affect m and n
-# cost: Excess of errors up to which the next mesh is halfway, which mostly divides them by 4 to 20; the same of q, q1
-# and q2 after the first step, when halfway meshes hardly reduce the estimates of these
-_NEARLY = 3.0, 0.7
-# cost: the same at kinks that neither q1 nor q2 has, and, at most, at kinks of the coefficient of friction
-_PASSING = 32.0
+_AT_BENDS = 32.0  # cost: most size of cells at kinks of the coefficient of friction, over the size at the ends
 _WORK = 5e11  # limit: cells^3 times load steps of a mesh
 _LEG = 6.0  # cost: work of a leg that is followed while cells touch and open, over that of a load step (measured)
-_HALVED = 1.7  # accuracy: growth that is less reduced is that of a halfway mesh: 2 times is usual, sqrt(2) halfway
-# accuracy: Errors of m and n, as parts of the change to the next mesh and to a halfway one (measured:
-# benchmarks/estimates.py), and of growth^3. Parts of growth^3 and of growth^2 of ends that are soft, over their
-# stiffness, 1 in Hertz contacts: an error of the loads moves an end the more the less stiff the end is. It falls with
-# growth^2, but the first meshes err by more (measured on 18 ends)
-_MOVED, _CUBIC = (0.1, 0.43), 0.15
-_CUBIC_OF_SOFT, _SQUARE_OF_SOFT = 0.05, 2.5e-3
-# accuracy: The same part in a narrow stick zone, which its surroundings move as a whole. Cells nearby are reduced
-# with the zone: only growth is halved from mesh to mesh, and errors are of second order in it
-_CARRIED = 1 / 3, 1.0
-# accuracy: The same where slip turns round; also, at an end that moves over cells that slipped, parts of the cell's
-# size; and parts of the change of q, which is locked in where the zone has moved, by the share of such points
-# (measured)
-_TURNED, _CAUGHT_UP, _LOCKED = 2.0, 0.5, 0.2
-# accuracy: cells inside an end of the stick zone from which its stiffness is found; least stiffness
-_FITTED, _SOFTEST = 4, 1e-3
-# accuracy: errors of q, q1 and q2 as parts of the change to the second mesh, to later meshes, and to halfway ones
-_CHANGED, _CHANGED_HALFWAY = (0.4, 0.35), 0.5
-# accuracy: the same where slip turns round, in those: what the way locks in does not fall with each mesh (measured: of
-# 196 scenes 13 were beyond, at most 3.9 times)
-_LOCKED_IN = 2.0
 _SEVERAL = "more than one zone sticks, as the coefficient of friction varies"
 Added = Callable[[Array], Array]
 
@@ -85,15 +51,13 @@ class SimilarLevel(driver.Level):
     """Solution on one mesh of cells; lengths in half-widths of the frame (:class:`NormalLoads`) from its middle, forces
     in P.
     ``pressed`` are the normal forces, ``kinks`` are those of q at the load points; ``stepped`` are errors due to the
-    load steps, from the mesh on which these were chosen last. ``number``: of the mesh, from 0; ``growth``: its growth.
+    load steps, from the mesh on which these were chosen last.
     ``trail``: where load steps on the next mesh begin.
     """
 
     pressed: Array
     kinks: tuple[float, ...] = ()
     stepped: Errors = field(default_factory=dict)
-    number: int = 0
-    growth: float = 0.0
     trail: Trail | None = None
 
     @property
@@ -102,33 +66,28 @@ class SimilarLevel(driver.Level):
         return (self.stick.left, self.stick.right) if self.stick else ()
 
     @property
-    def passing(self) -> list[float]:
-        """Kinks that neither q1 nor q2 has: out of phase these are -f p and f p beside the stick zone, where the kinks
-        of single load points pass by, if the pressure is constant. Kinks in the stick zone last."""
-        if not self.stick or not self.history or self.history.path.in_phase or self.history.path.presses_anew:
-            return []
-        return [kink for kink in self.kinks if not self.stick.left <= kink <= self.stick.right]
+    def passing(self) -> tuple[float, ...]:
+        """Kinks that neither q1 nor q2 has."""
+        return passing(self.kinks, self.stick, self.history)
 
 
 class SimilarBodies(driver.CellProblem[SimilarLevel]):
     """Half-planes of like materials, for :func:`partialslip.march.driver.march`; ``added`` as for
     :func:`partialslip.march.method.solve`."""
 
-    telling = ("m", "n")
-    nearly = _NEARLY
-
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock, added: Added | None) -> None:
         self.added, self.normal, path = added, NormalLoads.of(scene), load_path(scene, plan, start)
-        # a path out of phase takes more than one coarse mesh to find its stick zone
-        self.coarse = 2 if path and not path.in_phase and len(_MESHES) > 1 else 1
-        frame, meshes = self.normal.frame, (*_MESHES[:1] * self.coarse, *_MESHES[1:])
-        super().__init__(scene, start, clock, path, (frame.centre, frame.a), meshes)
+        frame = self.normal.frame
+        super().__init__(scene, start, clock, path, (frame.centre, frame.a))
         self._ends = [*self.normal.ends, *self.normal.within(scene.profile.kinks)]
         self._inner = self.normal.within(finest(start.q.x)) if start else []
         self._friction = self.normal.within(scene.friction.sharp_kinks(self.length))
 
     def cells(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> Array:
-        return _cells(self._ends, self._inner, self._friction, level, *mesh)
+        ends = [*self._ends, *(level.zone if level else ())]
+        moving = level.passing if level else ()
+        kinks = [*self._inner, *(kink for kink in (level.kinks if level else ()) if kink not in moving)]
+        return cells_around(ends, mesh, 1.0, kinks, moving, self._friction, _AT_BENDS)
 
     def too_large(self, level: SimilarLevel, count: int) -> bool:
         history = level.history
@@ -140,19 +99,20 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
     def solve(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> SimilarLevel:
         # steps are chosen on the first mesh that is not coarse and used on all later meshes. Finer cells see more of a
         # moving stick zone: where steps matter, each later mesh halves them once and estimates their errors anew
-        number, stepped = (level.number + 1, level.stepped) if level else (0, Errors())
-        first = number == self.coarse
+        stepped, first = level.stepped if level else Errors(), self.meshes == driver.COARSE
         choose = first or (steps_matter(stepped, self.scene.fem.accuracy) and not self.clock.limited)
         cells = self.cells(level, mesh)
-        found = _solve_level(
-            self.normal, self.path, self.start, cells, self.clock, choose, self.added, level.trail if level else None
-        )
+        found = _solve_level(self, cells, choose, level.trail if level else None)
         if first and found.history:
             self.path = found.history.path
-        return replace(found, stepped=found.stepped or stepped, number=number, growth=mesh[1])
+        return replace(found, stepped=found.stepped or stepped)
 
-    def mesh_errors(self, level: SimilarLevel, before: SimilarLevel) -> Errors:
-        return _mesh_errors(self.normal, level, before, level.number == self.coarse)
+    def changes(self, level: SimilarLevel, other: SimilarLevel) -> Errors:
+        assert level.history
+        assert other.history
+        moved = changes.of_ends(np.array(level.zone), np.array(other.zone))
+        shear = changes.of_shear(level.vertices, level.history, other.vertices, other.history)
+        return dict.fromkeys("mn", moved * self.normal.frame.a / self.normal.largest.a) | shear
 
     def step_errors(self, level: SimilarLevel) -> Errors:
         return level.stepped
@@ -209,167 +169,27 @@ def add_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock:
     return replace(found, surface=surface, stress_at=StressAt(stresses.inside), cost=clock.cost())
 
 
-def _cells(
-    ends: list[float], inner: list[float], friction: list[float], level: SimilarLevel | None, size: float, growth: float
-) -> Array:
-    """Ends of cells (c + 1,) of ``size`` at the ``ends`` and at the stick zone's ends on the previous ``level``, and of
-    a larger size at ``inner`` kinks of q and at the kinks on that level, the largest at those that are passing.
-
-    Cells are small compared with the distance of neighbouring ends: q is steep in narrow slip zones and stick zones.
-    Each kink of the coefficient of ``friction`` is an end of a cell, and as many cells as ``growth`` tells lie
-    between two of them: no dip is left out.
-    """
-    fine: Array = np.sort(apart([*ends, *(level.zone if level else ())], _SMALLEST))
-    bends = apart(friction, _SMALLEST, fine.tolist())[len(fine) :]
-    gap = nearest(np.array([*fine, *bends]))
-    moving = level.passing if level else []
-    lasting = [kink for kink in (level.kinks if level else ()) if kink not in moving]
-    known = apart([*inner, *lasting], _INNER * size, fine.tolist())
-    passing = apart(moving, _PASSING * size, [*known, *bends])[len(known) + len(bends) :]
-    points = np.array([*known, *bends, *passing])
-    sizes = np.full(len(points), _PASSING * size)
-    sizes[: len(known)] = _INNER * size
-    sizes[: len(fine)] = np.maximum(size * np.minimum(_NEAR * gap[: len(fine)], 1.0), _SMALLEST)
-    at_bends = slice(len(known), len(known) + len(bends))
-    sizes[at_bends] = np.minimum(sizes[at_bends], growth * gap[len(fine) :])
-    order = np.argsort(points)
-    return graded_cells(points[order], sizes[order], growth)
-
-
-def _solve_level(
-    normal: NormalLoads,
-    path: Path | None,
-    start: State | None,
-    vertices: Array,
-    clock: Clock,
-    choose: bool,
-    added: Added | None,
-    before: Trail | None,
-) -> SimilarLevel:
-    scene, frame = normal.scene, normal.frame
+def _solve_level(problem: SimilarBodies, vertices: Array, choose: bool, before: Trail | None) -> SimilarLevel:
+    """Solve on the cells between ``vertices``, and ``choose`` the load steps."""
+    normal, path, clock = problem.normal, problem.path, problem.clock
+    scene, frame, forces = normal.scene, normal.frame, normal.forces(normal.second, vertices)
     if not path:
-        return SimilarLevel(vertices, None, None, normal.forces(normal.second, vertices))
-    x = (vertices[1:] + vertices[:-1]) / 2
-    if start:
-        path = replace(path, before=on_cells(start.q, frame.places(vertices)) / scene.P)
+        return SimilarLevel(vertices, None, None, forces)
+    line, places, trail, stepped = contact_line(vertices), frame.places(vertices), None, Errors()
+    if problem.start:
+        path = replace(path, before=on_cells(problem.start.q, places) / scene.P)
     with clock.phase("compliance"):
         normally = compliance(vertices / 2)  # scaling lengths adds a rigid shift only
-        tangential = normally + added(frame.places(vertices)) if added else normally
+        tangential = normally + problem.added(places) if problem.added else normally
     with clock.phase("contact"):
-        f = friction_on(scene.friction, frame.places(vertices))
-        moved = stretched(x * frame.a / scene.length, frame.centre / scene.length)
-
-        def zone(of: History) -> StickInterval:
-            if not of.path.presses_anew:
-                known = of.lasting, of.unsteady, of.stuck
-                return read_stick_zone(x, of.bound, of.change, vertices, lambda values: values, *known)
-            on = np.flatnonzero(of.bound > 0)
-            here, forces = of.of(on), partial(spread, where=on, count=len(x))
-            known = here.lasting, here.unsteady, here.stuck
-            found = read_stick_zone(x[on], here.bound, here.change, vertices, forces, *known)
-            return within(found, normal.common, vertices)
-
-        def errors(of: History, gradual: History) -> dict[str, float]:
-            return of_steps(of, gradual, (zone(of), zone(gradual)), np.diff(vertices), normal.largest.a / frame.a)
-
+        f = friction_on(scene.friction, places)
+        moved = stretched(line.x * frame.a / scene.length, frame.centre / scene.length)
         if path.presses_anew:
-            presses = normal.presses(vertices, normally)
-            trail = Trail(x, before)
-            along = partial(coulomb_varying_pressure.march, x, tangential, moved, f, presses, trail=trail)
+            presses, trail = normal.presses(vertices, normally), Trail(line.x, before)
+            along = partial(coulomb_varying_pressure.march, line.x, tangential, moved, f, presses, trail=trail)
+            errors = partial(of_steps, line, half_width=normal.largest.a / frame.a, common=normal.common)
             history, stepped = follow_or_step(along, path, scene.fem.accuracy, errors if choose else None)
         else:
-            trail = None
             history = coulomb_constant_pressure.march(tangential, moved, normal.forces(frame, vertices), f, path)
-            stepped = {}
-        inner = [kinks(x, held, q, vertices, lambda values: values) for q, held in reversed(history.visited)]
-        inner.append(history.turning(x))
-        forces = normal.forces(normal.second, vertices)
-        return SimilarLevel(
-            vertices,
-            history,
-            zone(history),
-            forces,
-            tuple(itertools.chain.from_iterable(inner)),
-            stepped,
-            trail=trail,
-        )
-
-
-def _mesh_errors(normal: NormalLoads, level: SimilarLevel, before: SimilarLevel, first: bool) -> dict[str, float]:
-    """Discretisation errors of m and n (in half-widths of the contact at the largest P) and of q, q1 and q2 (relative
-    L2 of cell averages).
-
-    Errors of m and n are a part of the change from the mesh ``before``, or a multiple of growth^3 or growth^2, the
-    latter the larger the less stiff the end is. Errors of q are a part of the change, for which ``first`` tells whether
-    the mesh before is the first one. The factors are calibrated on random scenes with known solutions.
-    """
-    assert level.stick
-    assert before.stick
-    assert level.history
-    assert before.history
-    left, right = normal.common
-    gaps = np.diff([left, *level.zone, right])
-    # an end of the stick zone at the end of the contacts is known
-    gap = np.minimum(np.where(gaps[:-1] > 0, gaps[:-1], np.inf), np.where(gaps[1:] > 0, gaps[1:], np.inf))
-    cells = np.clip(np.searchsorted(level.vertices, level.zone) - 1, 0, len(level.pressed) - 1)
-    size = np.diff(level.vertices)[cells]
-    unseen = _SOMEWHERE * size * (gap < _CELLS * size)
-    moved = max(abs(level.stick.left - before.stick.left), abs(level.stick.right - before.stick.right))
-    growth = level.growth
-    soft = max(_CUBIC_OF_SOFT * growth**3, _SQUARE_OF_SOFT * growth**2)
-    between = np.maximum(_CUBIC * growth**3, soft / _stiffness(level))
-    between *= np.minimum(_NEAR * gap, 1.0)
-    part = _CARRIED if _NEAR * gaps[1] < 1 else _MOVED
-    halfway = not first and before.growth < _HALVED * level.growth
-    changed = _CHANGED_HALFWAY if halfway else _CHANGED[not first]
-    known = np.maximum(unseen, np.maximum(part[halfway] * moved, between))
-    changes = {
-        key: changed * _apart(level, of, before.history, before.vertices, 2 if key == "q" else 1)
-        for key, of in SHEARS.items()
-    }
-    if level.history.turns:
-        known = _TURNED * known + _CAUGHT_UP * size * np.array(level.stick.moved)
-        known = np.maximum(known, _LOCKED * _passed(level) * changes["q"]) + level.stick.strips
-        changes = {key: _LOCKED_IN * change for key, change in changes.items()}
-    known *= normal.frame.a / normal.largest.a
-    return dict(zip("mn", known.tolist(), strict=True)) | changes
-
-
-def _passed(level: SimilarLevel) -> float:
-    """Share of the stick zone whose points slip on the way."""
-    assert level.stick
-    assert level.history
-    still = permanent_zone(level.x, level.history, level.stick)
-    if still is None or level.stick.left == level.stick.right:
-        return 0.0
-    width = 0.0 if np.isnan(still[0]) else still[1] - still[0]
-    return 1.0 - width / (level.stick.right - level.stick.left)
-
-
-def _stiffness(level: SimilarLevel) -> Array:
-    """Stiffness K of the ends of the stick zone, (2,), at most 1: f p - |dq|/2 is K f p0 sqrt(2 c r)/a at a small
-    distance r inside an end, with p0 of a Hertz contact and the half-width c of the zone. Beside the flat part of a
-    punch K is small. 1 at ends that moved over cells that slipped, where the room begins with another power."""
-    history, stick, vertices = level.history, level.stick, level.vertices
-    assert history
-    assert stick
-    after, c = np.searchsorted(vertices, level.zone), (stick.right - stick.left) / 2
-    ranges = (after[0] - 1, after[0] + _FITTED), (after[1] - 1 - _FITTED, after[1])
-    found = np.ones(2)
-    for side, (first, last) in enumerate(np.clip(ranges, 0, len(vertices) - 1).tolist()):
-        if stick.moved[side] or c == 0:
-            continue
-        room = float((history.bound - stick.signs[side] * history.change / 2)[first:last].sum())
-        r = abs(float(vertices[first if side else last]) - level.zone[side])
-        hertz = float(history.bound.sum()) * (2 / np.pi) * np.sqrt(2 * c) * (2 / 3) * r**1.5
-        found[side] = np.clip(room / hertz, _SOFTEST, 1.0)
-    return found
-
-
-def _apart(level: SimilarLevel, of: Callable[[History], Array], other: History, cells: Array, shears: int) -> float:
-    """Relative L2 difference of the means over ``cells`` (c + 1,), the cells of the ``other`` history, of the forces
-    ``of`` the level and of the other history, which are sums of 1 or 2 ``shears``."""
-    assert level.history
-    known, bound = (norm_parts(level.vertices, each, cells) for each in (of(level.history), level.history.bound))
-    others = norm_parts(cells, of(other), cells)
-    return relative_change(known, others, shears * LEAST_SHEAR * float(np.linalg.norm(bound)))
+        stick, kinks = line.stick_zone(history, normal.common), tuple(line.kinks(history))
+        return SimilarLevel(vertices, history, stick, forces, kinks, stepped, trail=trail)

@@ -5,26 +5,26 @@ both together (:mod:`partialslip.friction.coulomb_coupled`). Scaled: lengths by 
 by A P.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from msgspec.structs import replace as changed
 
 from partialslip.friction import coulomb_coupled
-from partialslip.friction.active_set import Solution, spread
+from partialslip.friction.active_set import Solution
+from partialslip.friction.contact_line import common_ends
 from partialslip.friction.even_gap import PARABOLA, even_gap
-from partialslip.friction.history import SHEARS, History, certificate, last_cycle_change
+from partialslip.friction.history import certificate, last_cycle_change
 from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.normal import press
 from partialslip.friction.pressing import Pressed
 from partialslip.friction.regime import steady_state, steps_of_coupled
 from partialslip.friction.step_errors import Errors, along_path, more_steps, other_steps, pressed_together, summed
 from partialslip.friction.work import told_by_finer
-from partialslip.friction.zone_ends import StickInterval, apart, contact_ends, kinks, read_stick_zone, within
 from partialslip.halfplane.tractions import CoupledTractions
-from partialslip.march import driver
-from partialslip.march.cells import friction_on, graded_cells, nearest, norm_parts, on_cells, relative_change
+from partialslip.march import changes, driver
+from partialslip.march.cells import cells_around, contact_line, friction_on, on_cells
 from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
@@ -34,19 +34,11 @@ from partialslip.scene import Scene
 from partialslip.scene.materials import Material
 from partialslip.scene.plan import Plan
 from partialslip.tools.arrays import Array
-from partialslip.tools.bars import BARS, LEAST_SHEAR
+from partialslip.tools.bars import BARS
 
-_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (3e-4, 0.05), (1e-4, 0.025))  # accuracy: (cell size at the ends, in a; growth)
-_INNER = 8.0  # cost: size of cells at kinks over the size at the ends
-_NEAR = 10.0  # accuracy: cells at ends closer to each other than a/10 are reduced in proportion
-_SMALLEST = 1e-9  # accuracy: in a: closer ends are merged, and smaller cells are not requested
 _BEYOND = 1.2  # accuracy: extent of the cells, in that of the contact without coupling ...
 _WIDER = 1.5  # cost: ... and how many times wider they are made where they do not enclose the contact
 _ROUNDING = 1e-12  # accuracy: relative difference of two compliances that is rounding
-# accuracy: Errors of q1 and q2 as parts of their change from mesh to mesh: the growth halves, and what pressing locks
-# in has errors of about the order 1.5 in the growth, mostly 0.46 to 0.56 of the change, but up to 1.2 of it in bodies
-# that are only pressed (measured); half for all others.
-_OF_CHANGE = {"q1": 1.2, "q2": 1.2}
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
@@ -77,8 +69,7 @@ class UnlikeLevel(driver.Level):
     @property
     def common(self) -> tuple[float, float]:
         """Ends of what is in contact at both load points."""
-        (left1, right1), (left2, right2) = self.ends
-        return max(left1, left2), min(right1, right2)
+        return common_ends(self.ends)
 
     @property
     def fine(self) -> list[float]:
@@ -91,11 +82,10 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
     the flat ``punch`` as which the contact grows under an even ``gap``, if it is one. ``followed`` are the errors of
     the load steps, on the first cells that are not coarse. There as many steps are taken as these errors call for."""
 
-    telling = ("a",)
     steps_count = False  # they are as many as their errors call for
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock) -> None:
-        super().__init__(scene, start, clock, load_path(scene, plan, start), (scene.origin, scene.length), _MESHES)
+        super().__init__(scene, start, clock, load_path(scene, plan, start), (scene.origin, scene.length))
         self.beta = dundurs(scene) if plan.needs("coupling") and plan.needs("friction") else 0.0
         self.gap = None if start else even_gap(scene, self.length)
         self.punch = PunchGrowth.of(self.beta, scene.friction.f) if self.beta and self.gap else None
@@ -108,7 +98,7 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
 
     def solve(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
         found = self._enclosed(level, mesh)
-        if level and not self.followed and self.path and self.path.moves and self.beta:
+        if self.meshes >= driver.COARSE and not self.followed and self.path and self.path.moves and self.beta:
             return self._in_enough_steps(found)
         return found
 
@@ -122,7 +112,7 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
             if not more or self.clock.remaining() <= 0:
                 break
             self.path = more
-            level = _solve_on(self, more, level.vertices, max(level.a), self.clock)
+            level = _solve_on(self, more, level.vertices, max(level.a))
         return level
 
     def _enclosed(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
@@ -130,14 +120,28 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
         wider = 1.0
         while True:
             near = max(level.a) if level else None
-            found = _solve_on(self, self.path, self.cells(level, mesh, wider), near, self.clock)
+            found = _solve_on(self, self.path, self.cells(level, mesh, wider), near)
             touching = [found.pressing.x] + ([found.history.bound] if found.history else [])
             if not any(forces[0] or forces[-1] for forces in touching):
                 return found
             wider *= _WIDER
 
-    def mesh_errors(self, level: UnlikeLevel, before: UnlikeLevel) -> Errors:
-        return _mesh_errors(level, before, self)
+    def changes(self, level: UnlikeLevel, other: UnlikeLevel) -> Errors:
+        a, meshes = level.a[self.scene.largest - 1], (level.vertices, other.vertices)
+        found = dict.fromkeys(("a", "left", "right"), changes.of_ends(np.array(level.ends), np.array(other.ends)) / a)
+        found["p"] = changes.of_traction(meshes[0], level.pressing.x, meshes[1], other.pressing.x)
+        if level.stick and other.stick:
+            zones = (np.array([stick.left, stick.right]) for stick in (level.stick, other.stick))
+            found |= dict.fromkeys("mn", changes.of_ends(*zones) / a)
+        if level.history and other.history:
+            found |= changes.of_shear(meshes[0], level.history, meshes[1], other.history)
+        return found
+
+    def mesh_errors(self, level: UnlikeLevel, before: UnlikeLevel, earlier: UnlikeLevel) -> Errors:
+        errors = super().mesh_errors(level, before, earlier)
+        if self.punch and level.history and not level.history.path.moves:  # its stick zone is that of all meshes
+            errors |= {key: errors[key] + 2 * self.punch.off for key in "mn"}
+        return errors
 
     def step_errors(self, level: UnlikeLevel) -> Errors:
         return summed(_step_errors(level), self.followed)
@@ -191,27 +195,17 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
 
     def cells(self, level: UnlikeLevel | None, mesh: tuple[float, float], wider: float = 1.0) -> Array:
         """Cells that reach ``wider`` than usual beyond the contact."""
-        size, growth = mesh
-        far = _BEYOND * wider * self.width
-        if level is None:
-            fine, inner, a = [-self.width, self.width], list[float](), self.width
-        else:
-            a = max(level.a)
-            fine, inner = apart(level.fine, _SMALLEST * a), [*level.kinks]
-        inner += [(kink - self.scene.origin) / self.scene.length for kink in self.scene.profile.kinks]
-        inner += [0.0] if self.punch and self.gap and self.gap.parabolic else []  # there q/p is x ln|x|
-        L, friction = self.scene.length, self.scene.friction
-        bends = [(kink - self.scene.origin) / L for kink in friction.sharp_kinks(a * L)]
-        bends = apart([bend for bend in bends if abs(bend) < far], _SMALLEST * a, fine)[len(fine) :]
-        gap = nearest(np.array([*fine, *bends])) / a
-        sizes = np.maximum(size * np.minimum(_NEAR * gap[: len(fine)], 1.0), _SMALLEST) * a
-        at_bends = np.minimum(_INNER * size, growth * gap[len(fine) :]) * a
-        others = [kink for kink in apart(inner, _INNER * size * a, fine)[len(fine) :] if abs(kink) < far]
-        points = np.concatenate([fine, bends, others, [-far, far]])
-        wide = growth * (far - self.width)
-        every = np.concatenate([sizes, at_bends, np.full(len(others), _INNER * size * a), [wide, wide]])
-        order = np.argsort(points)
-        return graded_cells(points[order], every[order], growth)
+        scene, far, a = self.scene, _BEYOND * wider * self.width, max(level.a) if level else self.width
+        kinks = [*(level.kinks if level else ()), *self._scaled(scene.profile.kinks)]
+        kinks += [0.0] if self.punch and self.gap and self.gap.parabolic else []  # there q/p is x ln|x|
+        bends = self._scaled(scene.friction.sharp_kinks(a * scene.length))
+        kinks, bends = ([each for each in points if abs(each) < far] for points in (kinks, bends))
+        wide = mesh[1] * (far - self.width)
+        outer = (-far, wide), (far, wide)
+        return cells_around(level.fine if level else [-self.width, self.width], mesh, a, kinks, (), bends, outer=outer)
+
+    def _scaled(self, points: Sequence[float]) -> list[float]:
+        return [(point - self.scene.origin) / self.scene.length for point in points]
 
 
 def _extent(scene: Scene) -> float:
@@ -221,24 +215,19 @@ def _extent(scene: Scene) -> float:
     return max(abs(end) for end in found) / scene.length
 
 
-def _solve_on(
-    problem: UnlikeBodies, path: Path | None, vertices: Array, near: float | None, clock: Clock
-) -> UnlikeLevel:
+def _solve_on(problem: UnlikeBodies, path: Path | None, vertices: Array, near: float | None) -> UnlikeLevel:
     """Solve on the cells between ``vertices``, for a contact of about the half-width ``near`` if that is known."""
-    scene = problem.scene
-    x, widths, L = (vertices[1:] + vertices[:-1]) / 2, np.diff(vertices), scene.length
+    scene, clock = problem.scene, problem.clock
+    line, L = contact_line(vertices, problem.beta), scene.length
+    x = line.x
     with clock.phase("compliance"):
         C = relative(vertices, problem.beta)
     with clock.phase("contact"):
-        points = (x[:, None] + widths[:, None] / 2 * _NODES) * L + scene.origin
+        points = (x[:, None] + line.weights[:, None] / 2 * _NODES) * L + scene.origin
         gap = scene.gap_at(points) @ (_WEIGHTS / 2) / (scene.material.A * scene.P)
-
-        def ends(p: Array, q: Array | None = None) -> tuple[float, float]:
-            return contact_ends(vertices, p, x[p > 0], q, problem.beta)
-
         if not path:
             pressing = press(C.yy, gap, 1.0)
-            return UnlikeLevel(vertices, None, None, pressing, None, (ends(pressing.x),) * 2)
+            return UnlikeLevel(vertices, None, None, pressing, None, (line.ends(pressing.x),) * 2)
         begins = None
         if problem.start:
             places = vertices * L + scene.origin
@@ -246,78 +235,24 @@ def _solve_on(
             path = replace(path, before=shear)
         under = problem.gap or PARABOLA
         stages = OnCells(problem.punch, vertices, under) if problem.punch else None
-        line = coulomb_coupled.Nodes(x, widths, ends, None, stages is not None, near=near, stages=stages, under=under)
+        growth = coulomb_coupled.Growth(stages is not None, near=near, stages=stages, under=under)
         moved = stretched(x, scene.origin / L)
         stretch, allowed = np.array([moved[0], 0 * x]), BARS["q"] * scene.fem.accuracy
-        f = friction_on(scene.friction, vertices * L + scene.origin)
-        history, pressing, first = coulomb_coupled.march(C, gap, stretch, moved[1], f, path, begins, line, allowed)
-        at_points = tuple(ends(p, q) for p, q in zip(history.pressures, (history.q1, history.q2), strict=True))
-        level = UnlikeLevel(vertices, history, None, pressing, first, at_points)  # type: ignore[arg-type]
-        return replace(level, stick=_stick_zone(level, problem.punch), kinks=_kinks(level))
-
-
-def _stick_zone(level: UnlikeLevel, punch: PunchGrowth | None) -> StickInterval:
-    history, still = level.history, level.pressed is not None
-    assert history
-    on = np.flatnonzero(history.bound > 0)
-    bound, change = history.bound[on], history.change[on]
-    if still and not history.path.moves:
-        assert level.pressed
-        p, q = level.pressed.growth
-        bound, change = level.pressed.f[on] * np.maximum(p[on], 0.0), 2 * q[on]
-    stick = read_stick_zone(level.x[on], bound, change, level.vertices, partial(spread, where=on, count=len(level.x)))
-    if history.path.presses_anew:
-        return within(stick, level.common, level.vertices)
-    left, right = level.common
-    if punch and not history.path.moves:  # the punch knows it better than the cells
-        reach = punch.stick * (right - left) / 2
-        return replace(stick, left=-reach, right=reach)
-    return replace(stick, left=max(stick.left, left), right=min(stick.right, right))
-
-
-def _kinks(level: UnlikeLevel) -> tuple[float, ...]:
-    assert level.history
-    found: list[float] = []
-    for q, bound in level.history.visited:
-        on = np.flatnonzero(bound > 0)
-        found += kinks(level.x[on], bound[on], q[on], level.vertices, partial(spread, where=on, count=len(level.x)))
-    left, right = level.common
-    return tuple(kink for kink in found if left < kink < right)
-
-
-def _mesh_errors(level: UnlikeLevel, before: UnlikeLevel, problem: UnlikeBodies) -> Errors:
-    """Errors of the ends (in a), and of p, q, q1 and q2 (relative L2 of cell means), from the change since the mesh
-    ``before``."""
-    largest = problem.scene.largest - 1
-    a = level.a[largest]
-    errors = {"a": abs(a - before.a[largest]) / a}
-    for side, key in enumerate(("left", "right")):
-        errors[key] = max(abs(one[side] - other[side]) for one, other in zip(level.ends, before.ends, strict=True)) / a
-    errors["p"] = _apart(level, level.pressing.x, before, before.pressing.x, 0 * before.x)
-    if level.stick and before.stick:
-        errors["m"] = abs(level.stick.left - before.stick.left) / a
-        errors["n"] = abs(level.stick.right - before.stick.right) / a
-    if problem.punch and level.history and not level.history.path.moves:
-        # the stick zone is a known part of the contact, so that its ends move with those of the contact
-        errors["m"] = errors["n"] = 2 * problem.punch.off + problem.punch.stick * errors["a"]
-    if level.history and before.history:
-        bound = before.history.bound
-        errors |= {
-            key: _apart(level, of(level.history), before, of(before.history), (2 if key == "q" else 1) * bound)
-            for key, of in SHEARS.items()  # q is half of the change
-        }
-    return {key: _OF_CHANGE.get(key, 0.5) * error for key, error in errors.items()}
-
-
-def _apart(level: UnlikeLevel, forces: Array, before: UnlikeLevel, others: Array, bound: Array) -> float:
-    """Relative L2 difference of the means over the cells of the level ``before`` of ``forces`` and ``others``; shear is
-    not less than a part of ``bound``."""
-    cells = before.vertices
-    found, other, held = (
-        norm_parts(level.vertices, forces, cells),
-        *(norm_parts(cells, x, cells) for x in (others, bound)),
-    )
-    return relative_change(found, other, LEAST_SHEAR * float(np.linalg.norm(held)))
+        loaded = C, gap, stretch, moved[1], friction_on(scene.friction, vertices * L + scene.origin), path
+        history, pressing, pressed = coulomb_coupled.march(*loaded, line, growth, begins, allowed)
+        history = replace(history, rooms=None)  # room that fades from cycle to cycle counts as room
+        at_points = line.ends_at_points(history)
+        both = common_ends(at_points)
+        stick = line.stick_zone(history, both, pressed)
+        if problem.punch and not history.path.moves:  # the punch knows it better than the cells
+            reach = problem.punch.stick * (both[1] - both[0]) / 2
+            stick = replace(stick, left=-reach, right=reach)
+        kinks: list[float] = []
+        for q, bound in history.visited:
+            on = np.flatnonzero(bound > 0)
+            kinks += line.on(on).kinks_at(q[on], bound[on])
+        within = tuple(kink for kink in kinks if both[0] < kink < both[1])
+        return UnlikeLevel(vertices, history, stick, pressing, pressed, at_points, within)
 
 
 def _step_errors(level: UnlikeLevel) -> Errors:
@@ -331,14 +266,9 @@ def _path_errors(problem: UnlikeBodies, level: UnlikeLevel) -> tuple[UnlikeLevel
     """The ``level`` with the work that its load steps miss, and their errors on its cells; empty if not known."""
     assert level.history
     path = replace(level.history.path, before=None)
-    finer = _solve_on(problem, other_steps(path), level.vertices, max(level.a), problem.clock)
-    if not finer.history or not finer.stick or not level.stick:
+    finer = _solve_on(problem, other_steps(path), level.vertices, max(level.a))
+    if not finer.history:
         return level, {}
-    places = {id(level.history): level.ends, id(finer.history): finer.ends}
-
-    def ends(history: History) -> tuple[float, ...]:
-        return (*places[id(history)][0], *places[id(history)][1])
-
-    zones, widths = (level.stick, finer.stick), np.diff(level.vertices)
-    off = along_path(level.history, finer.history, zones, ends, widths, level.a[problem.scene.largest - 1])
+    line = contact_line(level.vertices, problem.beta)
+    off = along_path(line, level.history, finer.history, problem.scene.largest)
     return replace(level, history=told_by_finer(level.history, finer.history)), off

@@ -10,8 +10,7 @@ import numpy as np
 from partialslip.result import RATCHETS, Result, Slip
 from partialslip.result.peak import peak_error, pressure_peaks
 from partialslip.run import Run
-from partialslip.run.judge.known import error_of
-from partialslip.run.judge.reference import reference
+from partialslip.run.judge.reference import error_of, reference
 from partialslip.scene import Tabulated
 from partialslip.scene.units import LENGTHS, PREFIXES, SI, Dimension, Units
 

@@ -10,10 +10,10 @@ import numpy as np
 from partialslip.report.rows import shown_half_planes
 from partialslip.result import Result
 from partialslip.run import Run
+from partialslip.run.methods import METHODS
 from partialslip.scene import Friction, Scene, Tabulated
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
-from partialslip.tools.methods import METHODS
 from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:

@@ -13,20 +13,17 @@ import msgspec
 from msgspec.structs import replace
 
 from partialslip.halfplane.noise import Noise
-from partialslip.result.record import JsonNumber, ResultRecord, record_of
+from partialslip.result.record import JsonNumber, ResultRecord, plain, record_of
 from partialslip.run import Run
-from partialslip.run.judge import Comparison, Outcome, Verdict, conclude, of_run
-from partialslip.run.judge.outcome import missed_by
-from partialslip.run.judge.recorded import conditions_again, judged_again
+from partialslip.run.judge import Outcome, Verdict, conclude, conditions, of_run
+from partialslip.run.judge.comparison import judged_again
 from partialslip.run.judge.reference import reference_among
+from partialslip.run.judge.verdicts import missed_by
 from partialslip.scene import Scene
 from partialslip.scene.plan import Effect, Plan
-from partialslip.tools.errors import InputError
-from partialslip.tools.inputfile import read_bytes
 from partialslip.tools.origin import Made, versions
-from partialslip.tools.seal import KEY, edited, sealed_text
+from partialslip.tools.seal import KEY, read_sealed, sealed_text
 from partialslip.tools.shown import ByMethod
-from partialslip.tools.strictjson import converted, parsed
 
 SCHEMA = "partialslip/result/3"
 _LARGEST = 500_000_000  # limit: bytes of a results.json to read
@@ -79,14 +76,6 @@ class ComparisonRecord(msgspec.Struct, frozen=True):
     missed: tuple[str, ...]
     verdicts: tuple[Verdict, ...]
     conditions: tuple[Verdict, ...]
-
-    @classmethod
-    def of(cls, comparison: Comparison) -> "ComparisonRecord":
-        """Make the record of ``comparison``."""
-        verdicts, conditions = (
-            tuple(verdict.finite for verdict in some) for some in (comparison.verdicts, comparison.conditions)
-        )
-        return record_of(cls, comparison, verdicts=verdicts, conditions=conditions)
 
     def judged_again(
         self, result: ResultRecord, reference: ResultRecord, conditions: tuple[Verdict, ...]
@@ -171,7 +160,7 @@ class Record(ByMethod[ResultRecord], msgspec.Struct, frozen=True):
         Comparisons with a reference that is none for the scene make no run pass.
         """
         told = {name: each.conditions for name, each in self.comparison.items()}
-        known = {name: conditions_again(each, told.get(name, ())) for name, each in self.methods.items()}
+        known = {name: plain(conditions(each, told.get(name, ()))) for name, each in self.methods.items()}
         reference = self.methods.get(self.reference or "")
         comparison = {
             name: each.judged_again(self.methods[name], reference, known[name])
@@ -199,19 +188,17 @@ def record(run: Run, *, curves: bool = True, made: Made | None = None) -> Record
     made : Made, optional
         Origin of the run (:func:`partialslip.tools.origin.made_now`).
     """
-    return Record(
+    return record_of(
+        Record,
+        run,
         schema=SCHEMA,
-        outcome=run.outcome,
-        reference=run.reference,
-        missed=run.missed,
-        scene=run.scene,
         plan=PlanRecord.of(run.plan),
         methods={name: ResultRecord.of(result, curves) for name, result in run.results.items()},
-        comparison={name: ComparisonRecord.of(comparison) for name, comparison in run.comparisons.items()},
+        comparison={name: record_of(ComparisonRecord, comparison) for name, comparison in run.comparisons.items()},
         versions=versions(),
         made=made,
         noise=run.noise if curves else None,
-        spacing=dict(run.spacing),
+        edited=False,
     )
 
 
@@ -226,20 +213,11 @@ def load_result(path: str | Path) -> Record:
     InputError
         If the file cannot be read, is no strict JSON, or has another schema than this version writes.
     """
-    text, told = read_bytes(path, _LARGEST), f"{path}: must be a results.json that partialslip has written"
-    tree = parsed(text, told)
-    found = converted(tree, _Schema, told).schema
-    if found != SCHEMA:
-        raise InputError(f"{path}: schema {found!r}: must be {SCHEMA!r}; run the scene again")
-    changed = edited(text, tree)
-    kept = converted(tree, Record, told)
+    what, again = "must be a results.json that partialslip has written", "run the scene again"
+    kept, changed = read_sealed(path, _LARGEST, Record, SCHEMA, what, again)
     if changed or kept.edited:
         warnings.warn(f"{path}: edited since partialslip wrote it", stacklevel=2)
     return replace(kept, edited=True if kept.edited else changed).judged_again
-
-
-class _Schema(msgspec.Struct):
-    schema: str = ""
 
 
 def schema() -> dict[str, Any]:

@@ -2,12 +2,12 @@
 
 from partialslip.result.cost import Clock as Clock
 from partialslip.result.cost import Cost as Cost
-from partialslip.result.cost import Pace as Pace
 from partialslip.result.fields import DeformedBody as DeformedBody
 from partialslip.result.fields import Slip as Slip
 from partialslip.result.fields import StressAt as StressAt
 from partialslip.result.fields import SurfaceStress as SurfaceStress
 from partialslip.result.plates import Plates as Plates
+from partialslip.result.refining import Pace as Pace
 from partialslip.result.result import FRICTIONLESS as FRICTIONLESS
 from partialslip.result.result import PATH_DEPENDENT as PATH_DEPENDENT
 from partialslip.result.result import RATCHETS as RATCHETS

@@ -1,13 +1,97 @@
 """The cost of a method: CPU seconds, wall seconds and memory."""
 
+import contextlib
 import math
+import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
 
-from partialslip.result.memory import PeakMeter
 from partialslip.tools.allowance import Allowance
+
+try:
+    import resource
+except ImportError:  # Windows
+    resource = None  # type: ignore[assignment]
+
+_STATUS, _CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
+# limit: MB by which the mark may exceed the present memory without a reset: the kernel counts in batches
+_SLACK = 1.0
+_before_resets = 0.0  # MB, highest mark that a reset has removed
+
+
+class Peak(NamedTuple):
+    """Resident memory over a part of the life of this process.
+
+    Parameters
+    ----------
+    start_mb : float or None
+        Memory at the start, MB; None where the system does not report it.
+    peak_mb : float or None
+        Largest memory, MB; None if not known.
+    unknown : str
+        Why the peak is not known; empty if the peak is known.
+    """
+
+    start_mb: float | None
+    peak_mb: float | None
+    unknown: str = ""
+
+
+class PeakMeter:
+    """Measure the peak resident memory of this process from now on.
+
+    The high-water mark is reset only if the process has needed more memory before than it has now: a reset also lowers
+    the peak that the system reports to others, for example to ``time -v``.
+    """
+
+    def __init__(self) -> None:
+        self._start, mark = _memory()
+        self._floor = 0.0  # MB, a mark that is not of this part
+        if mark is not None and (self._start is None or mark > self._start + _SLACK) and not _reset(mark):
+            self._floor = mark
+
+    def peak(self) -> Peak:
+        """Return the peak up to now."""
+        mark = _memory()[1]
+        if mark is None:
+            return Peak(self._start, None, "this system does not report it")
+        if mark <= self._floor:
+            return Peak(self._start, None, f"at most {mark:.0f} MB, which this process had needed before")
+        return Peak(self._start, mark)
+
+
+def process_peak_mb() -> float | None:
+    """Return the peak resident memory of this process since its start, MB; None where the system does not report
+    it."""
+    mark = _memory()[1]
+    return None if mark is None else max(mark, _before_resets)
+
+
+def _memory() -> tuple[float | None, float | None]:
+    """Return the present resident memory and the high-water mark, MB; None where the system does not report them."""
+    with contextlib.suppress(OSError, ValueError, IndexError, KeyError):
+        lines = dict(line.split(":", 1) for line in _STATUS.read_text("ascii", "replace").splitlines())
+        now, mark = (float(lines[key].split()[0]) / 1024 for key in ("VmRSS", "VmHWM"))
+        return now, max(now, mark)
+    if resource is None:
+        return None, None
+    mark = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS, kilobytes elsewhere
+    return None, mark / (1024**2 if sys.platform == "darwin" else 1024)
+
+
+def _reset(mark: float) -> bool:
+    """Reset the high-water mark, which stands at ``mark`` MB. Returns whether the system allowed the reset."""
+    global _before_resets  # the mark belongs to the process
+    try:
+        _CLEAR.write_text("5", "ascii")
+    except OSError:
+        return False
+    _before_resets = max(_before_resets, mark)
+    return True
 
 
 @dataclass(frozen=True)
@@ -98,29 +182,3 @@ class Clock:
             start_rss_mb=memory.start_mb,
             peak_rss_unknown=memory.unknown,
         )
-
-
-class Pace:
-    """CPU seconds of meshes one after the other, and whether the next one fits the allowance of a ``clock``.
-
-    The next mesh is taken to grow as the last two did.
-    """
-
-    def __init__(self, clock: Clock) -> None:
-        self._clock, self._left = clock, clock.remaining()
-        self._took: list[float] = []
-
-    def took(self) -> None:
-        """Attribute the seconds since the last call to one mesh."""
-        if self._clock.limited:
-            left = self._clock.remaining()
-            self._took.append(self._left - left)
-            self._left = left
-
-    def fits(self, times: float = 1.0) -> bool:
-        """Return whether ``times`` the seconds of the next mesh are left; true without an allowance."""
-        if not self._clock.limited:
-            return True
-        before, last = [self._took[-1], *self._took][-2:]
-        growth = max(last / before, 1.0) if before > 0 else 1.0
-        return times * growth * last <= self._left

@@ -1,6 +1,7 @@
-"""A result as plain data for JSON: numbers, strings and lists."""
+"""Plain data for JSON, numbers, strings and lists: the one writer of records, and the record of a result."""
 
 from collections.abc import Mapping
+from dataclasses import is_dataclass, replace
 from typing import Any, TypeVar
 
 import msgspec
@@ -133,14 +134,16 @@ def record_of(kind: type[R], source: Any, **known: Any) -> R:
 
 
 def plain(value: Any) -> Any:
-    """Return ``value`` with None for numbers that are not finite, and tuples for arrays, also within mappings and
-    tuples."""
+    """Return ``value`` with None for numbers that are not finite, and tuples for arrays, also within mappings, tuples
+    and data classes."""
     if isinstance(value, np.ndarray):
         return numbers(value) if value.ndim == 1 else tuple(map(plain, value))
     if isinstance(value, float):
         return number(value)
     if isinstance(value, Mapping):
         return {key: plain(each) for key, each in value.items()}
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(value, **plain(vars(value)))
     return tuple(map(plain, value)) if isinstance(value, tuple) else value
 
 

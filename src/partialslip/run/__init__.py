@@ -1,7 +1,7 @@
 """A run: solve one scene by one or more methods, and compare each result with the reference."""
 
 import dataclasses
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -17,9 +17,9 @@ from partialslip.result.rig import Rig, key_of, load_rig
 from partialslip.result.state import State
 from partialslip.result.traction import sliding
 from partialslip.run.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
-from partialslip.run.judge.known import estimated
-from partialslip.run.judge.outcome import missed_by
-from partialslip.run.judge.reference import ALL_EFFECTS, reference, reference_among
+from partialslip.run.judge.reference import ALL_EFFECTS, estimated, reference, reference_among
+from partialslip.run.judge.verdicts import missed_by
+from partialslip.run.methods import METHODS, Means, Progress
 from partialslip.scene import Effects, Scene
 from partialslip.scene.plan import Plan, plan, reduced
 from partialslip.scene.reading import AnyScene, as_scene
@@ -27,7 +27,6 @@ from partialslip.tools.allowance import Allowance
 from partialslip.tools.bars import LARGEST, Accuracy, Asked, asked
 from partialslip.tools.errors import InputError
 from partialslip.tools.frame import frame
-from partialslip.tools.methods import METHODS
 from partialslip.tools.shown import ByMethod, Drawn
 from partialslip.tools.telling import told_to
 
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
     from partialslip.tools.frame import DataFrame
     from partialslip_fem import Kept
 
-Progress = Callable[[str], None]
 _ONE = "the contact slides at one of the load points: q at the other is not solved for"
 _KEPT = 8  # cost: rigs kept in a process
 _rigs: dict[str, Rig] = {}
@@ -268,14 +266,14 @@ def run(
         whole = replace(scene, effects=Effects())
         tasks[ALL_EFFECTS] = reference(whole).method, whole, plan(whole, subsurface=subsurface, start=start is not None)
     results: dict[str, Result] = {}
+    means = Means(rig_of, keep, allowance)
     for name, (method, what, its) in tasks.items():
         if stresses and _finds_stresses(what, method, results):
             its = its.with_stresses
         if method != "fem" and "fem" in results:
             what = _forced(what, results["fem"])
-        solve = METHODS[method].solver(keep=keep, allowance=allowance, rig_of=rig_of)
         with told_to(tell := _told_by(name, progress)):
-            results[name] = _slid(what, solve(what, its, tell, start))
+            results[name] = _slid(what, METHODS[method].solve(what, its, tell, start, means))
     results = {name: results[name] for name in (*chosen, *results)}
     if "fem" in results and (plates := results["fem"].plates):
         scene = plates.told(scene)

@@ -18,13 +18,33 @@ class Holder(Table, frozen=True, kw_only=True):
     height: Positive
 
 
+Name = Annotated[str, msgspec.Meta(min_length=1)] | int
+
+
+class Groups(Table, frozen=True, kw_only=True):
+    """What a mesh file calls the lines of a body's boundary: names, or numbers of physical groups."""
+
+    contact: Name | None = None
+    face: Name | None = None
+    back: Name | None = None
+    left: Name | None = None
+    right: Name | None = None
+
+    @property
+    def given(self) -> dict[str, str | int]:
+        """Names in the file by line, of those that are given."""
+        return {line: name for line in self.__struct_fields__ if (name := getattr(self, line)) is not None}
+
+
 class Body(Table, frozen=True, kw_only=True):
     """A finite body, in contact in the middle of its face.
 
     ``kind``: a ``block`` is rectangular; the face of a ``pad`` has the true shape of the profile, a circular arc for
     hertz. At most one body is a pad. ``width`` and ``height`` (m; the height of a pad is that in the middle) are the
     size of the body, behind which a ``holder`` may be bonded. Alternatively ``mesh`` is the path of a mesh file with
-    lengths in units of ``unit`` (m).
+    lengths in units of ``unit`` (m). Of a file with more bodies, ``body`` is the part, set or physical group (or its
+    number) that is this one; ``groups`` are the names in the file of ``contact``, ``back``, ``left``, ``right`` and
+    ``face``.
 
     ``support`` holds the body, or its holder, and carries P and Q. ``clamped``: the back is fixed to a rigid plate that
     does not rotate. ``pivot``: this plate turns on a pin on the axis x = 0, at the distance ``pivot_height`` (m) from
@@ -43,6 +63,8 @@ class Body(Table, frozen=True, kw_only=True):
     holder: Holder | None = None
     mesh: Annotated[str, msgspec.Meta(min_length=1)] | None = None
     unit: Positive | None = None
+    body: Name | None = None
+    groups: Groups | None = None
     support: Literal["clamped", "roller", "sides", "pivot"] = "clamped"
     pivot_height: Annotated[float, msgspec.Meta(ge=0)] | None = None
     pulled: bool = False
@@ -67,8 +89,9 @@ class Body(Table, frozen=True, kw_only=True):
                 raise InputError(f"{name}.{key}: {wrong}")
         if self.mesh is not None and self.holder:
             raise InputError(f"{name}.holder: must not be given together with mesh")
-        if self.unit is not None and self.mesh is None:
-            raise InputError(f"{name}.unit = {self.unit}: must be given only together with mesh")
+        for key in ("unit", "body", "groups"):
+            if (given := getattr(self, key)) is not None and self.mesh is None:
+                raise InputError(f"{name}.{key} = {given!r}: must be given only together with mesh")
         if self.pulled and self.support in ("clamped", "pivot"):
             raise InputError(f"{name}.pulled = true: must have support 'roller' or 'sides', not {self.support!r}")
         if self.right_grip and not (self.pulled and (self.gripped or self.mesh is None)):

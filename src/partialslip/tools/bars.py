@@ -21,7 +21,7 @@ BARS = {
 # limit: No bar is larger: a tenth of a, or of the norm. A traction whose error is larger is another traction.
 LARGEST = 0.1
 
-# accuracy: Errors of q are relative to the larger of q's norm and LEAST_SHEAR times f p's norm.
+# fixed: Errors of q are relative to the larger of q's norm and LEAST_SHEAR times f p's norm.
 LEAST_SHEAR = 1e-3
 
 # limit: A converged solver leaves residuals at rounding level, which is 1e-9 f p0 on the finest meshes.

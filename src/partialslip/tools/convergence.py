@@ -14,9 +14,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-LOWEST = 0.5  # accuracy: order below which an observed order is not trusted
-ABOVE_FORMAL = 0.5  # accuracy: above the formal order: orders higher than that are not trusted
-TRUSTED, NOT_TRUSTED = 1.25, 3.0  # accuracy: safety factors
+LOWEST = 0.5  # fixed: order below which an observed order is not trusted
+ABOVE_FORMAL = 0.5  # fixed: above the formal order: orders higher than that are not trusted
+TRUSTED, NOT_TRUSTED = 1.25, 3.0  # fixed: safety factors
 
 
 def power(x: Sequence[float], y: Sequence[float]) -> float:

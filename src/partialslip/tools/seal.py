@@ -6,11 +6,21 @@ nothing. It guards against accidents. Whoever wants to forge a file can make the
 
 import hashlib
 import json
-from typing import Any
+from typing import Any, TypeVar
 
+import msgspec
+
+from partialslip.tools.errors import InputError
+from partialslip.tools.inputfile import Name, read_bytes
 from partialslip.tools.output.files import json_text
+from partialslip.tools.strictjson import converted, parsed
 
 KEY = "sum"
+_Kind = TypeVar("_Kind")
+
+
+class _Schema(msgspec.Struct):
+    schema: str = ""
 
 
 def sealed_text(data: object) -> str:
@@ -18,6 +28,37 @@ def sealed_text(data: object) -> str:
     text = json_text(data)
     body = text.rstrip().removesuffix("}").rstrip()
     return f'{body},\n "{KEY}": "{_sum(text)}"\n}}\n'
+
+
+def read_sealed(
+    path: Name, most: int, kind: type[_Kind], schema: str, what: str, again: str
+) -> tuple[_Kind, bool | None]:
+    """Read a JSON file of one ``schema``, and whether it was edited since it was sealed; None if it has no seal.
+
+    Parameters
+    ----------
+    path : str or path
+    most : int
+        Largest size, bytes.
+    kind : type
+        Type of msgspec of the content.
+    schema : str
+        The value that the key ``schema`` must have.
+    what, again : str
+        For messages: what the file must be, and how one of this schema is made.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is no strict JSON, or has another schema or other content.
+    """
+    text, told = read_bytes(path, most), f"{path}: {what}"
+    tree = parsed(text, told)
+    found = converted(tree, _Schema, told).schema
+    if found != schema:
+        raise InputError(f"{path}: schema = {found!r}: must be {schema!r}; {again}")
+    changed = edited(text, tree)
+    return converted(tree, kind, told), changed
 
 
 def edited(text: bytes | str, tree: dict[str, Any]) -> bool | None:

@@ -8,9 +8,9 @@ from typing import Literal, get_args
 
 from partialslip.run.judge import Bar
 from partialslip.run.judge.reference import reference
+from partialslip.run.methods import REFERENCES
 from partialslip.scene.reading import meant
 from partialslip.tools.errors import InputError
-from partialslip.tools.methods import REFERENCES
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.catalogue import hard_cases, shipped
 from partialslip.verify.random_scenes import draw, draw_varying, kind_of, varies

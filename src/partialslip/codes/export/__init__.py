@@ -4,9 +4,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from partialslip.codes.export.abaqus import abaqus_deck
 from partialslip.codes.export.aster import aster_files
-from partialslip.codes.export.calculix import calculix_deck
+from partialslip.codes.export.inp import abaqus_deck, calculix_deck
 from partialslip.codes.export.model import GROWTH, SIZE, modelled
 from partialslip.codes.export.moose import moose_files
 from partialslip.codes.export.named_boundaries import UNTESTED

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from partialslip.codes.export.inp_lines import deck_heading
+from partialslip.codes.export.inp import deck_heading
 from partialslip.codes.export.model import Model
 from partialslip.codes.export.parts import MeshedBody
 from partialslip.scene import Scene
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from partialslip_meshes import QuadMesh
 
 UNTESTED = "untested"  # part of file names: nobody of the project has run these decks
-_STRAIGHT = 1e-9  # accuracy: largest change of the normal along a side, which is then straight
+_STRAIGHT = 1e-9  # limit: largest change of the normal along a side, which is then straight
 
 
 @dataclass(frozen=True)

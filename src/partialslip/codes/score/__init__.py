@@ -19,11 +19,11 @@ from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.run.judge import reference as references
 from partialslip.run.judge.measures import levels_of, pressures_of
+from partialslip.run.methods import REFERENCES
 from partialslip.scene import Scene
 from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.tools.bars import LARGEST, Accuracy, asked
 from partialslip.tools.errors import InputError
-from partialslip.tools.methods import REFERENCES
 
 _STRIPS = 2.0  # accuracy: widths of a strip that is not resolved: largest error that it may cause
 

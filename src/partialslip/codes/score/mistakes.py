@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.result import Result
-from partialslip.run.judge.means import fields, integrals
+from partialslip.run.judge.measures import fields, integrals
 from partialslip.scene import Scene
 from partialslip.scene.units import UNITS, Dimension
 from partialslip.tools.arrays import Array

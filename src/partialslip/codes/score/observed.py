@@ -7,7 +7,7 @@ import numpy as np
 
 from partialslip.codes.score.samples import Samples
 from partialslip.result import Observed, Traction
-from partialslip.run.judge.means import fields, means, relative
+from partialslip.run.judge.measures import fields, means, relative
 from partialslip.tools.arrays import Array
 
 _Function = Callable[[Array], Array]
@@ -29,7 +29,7 @@ def observed(samples: Samples) -> Observed:
 
 def hidden(x: Array, reference: Traction, f: float, keys: tuple[str, ...]) -> dict[str, float]:
     """Return how much of the ``reference`` the spacing of points ``x`` hides, by key, in the norms of
-    :func:`partialslip.run.judge.means.norm_errors`: how far lines between its values there are off.
+    :func:`partialslip.run.judge.measures.norm_errors`: how far lines between its values there are off.
 
     ``f`` and ``keys`` as there.
     """

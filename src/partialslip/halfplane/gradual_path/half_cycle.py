@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from partialslip.halfplane.gradual_path.graded import Smooth
-from partialslip.halfplane.gradual_path.inner import Parted
-from partialslip.halfplane.gradual_path.inner_way import SHUT
+from partialslip.halfplane.gradual_path.inner import inner_phase, opens
 from partialslip.halfplane.gradual_path.phases import Drifting, Leading, Phase, Resting, Retreating
 from partialslip.halfplane.gradual_path.retreat import Retreat, Zone
 from partialslip.halfplane.gradual_path.stage import Loads, LostError, Stage, common_zones, lasting
@@ -52,21 +51,21 @@ class HalfCycle:
 
     Attributes
     ----------
-    opens : bool
-        Whether a zone inside the stick zone slips as the half cycle begins.
+    opens, parted : bool
+        Whether a zone inside the stick zone slips as the half cycle begins, and whether it is followed.
     """
 
     def __init__(self, loads: Loads, start: Tractions, guess: "HalfCycle | float", parts: bool = True) -> None:
         self.loads, self.start, c = loads, start, loads.least
-        first, last = start.parts[0], start.parts[-1]
+        first = start.parts[0]
         # points on the bound on which the first rate pushes slip at once
         left = max(min(first.high, 1 - 2 * c), -1.0) if first.smooth is None and first.factor < 0 else -1.0
         self.phases: list[Phase] = []
         before: Leading = Resting(Stage(0.0, Zone(left, 1.0), start))
-        self.opens = last.smooth is None and before.last.zone.centre - c - last.low > SHUT
-        if parts and self.opens:
-            alike = guess.phases[0] if isinstance(guess, HalfCycle) else None
-            before = Parted(loads, before.last, last.low, alike if isinstance(alike, Parted) else None)
+        self.opens = opens(before.last, c)
+        self.parted = parts and self.opens
+        if self.parted:
+            before = inner_phase(loads, before.last, guess.phases[0] if isinstance(guess, HalfCycle) else None)
             self.phases.append(before)
         if c - before.last.zone.half_width > _SAME:  # the left end slips forwards from the beginning
             self.phases.append(self._last_retreat(before.last, 1, None))
@@ -128,11 +127,6 @@ class HalfCycle:
     def sign(self) -> int:
         """Direction of the last slip at the left end; at the right end it is positive."""
         return 1 if isinstance(self.phases[-1], Retreating) and self.phases[-1].retreat.sign > 0 else -1
-
-    @property
-    def parted(self) -> bool:
-        """Whether it begins with a slip zone inside the stick zone."""
-        return isinstance(self.phases[0], Parted)
 
     @property
     def stuck(self) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from partialslip.report import Record, record, write_run
-from partialslip.result.memory import process_peak_mb
+from partialslip.result.cost import process_peak_mb
 from partialslip.run import Run, run
 from partialslip.scene import Scene
 from partialslip.study.batch.ledger import case_key, scene_content

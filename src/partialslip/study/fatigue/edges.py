@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from partialslip.result import Result
-from partialslip.run.judge.known import error_of
+from partialslip.run.judge.reference import error_of
 from partialslip.scene import Scene
 from partialslip.tools.arrays import Array
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from partialslip.tools.arrays import Array
 
-_BEYOND, _DEEP = 2.0, 2.0  # accuracy: half-widths beyond the contact, and of depth, that are searched
+_FAR = 2.0  # accuracy: half-widths beyond the contact, and of depth, that are searched
 _BETWEEN, _LEVELS = 12, 16  # accuracy: intervals between places where tractions are not smooth, and of depth
 _WINDOW, _SHRINK, _ROUNDS = 5, 0.5, 16  # accuracy: points along a side of a window, its shrinkage and how often
 _NODES = 24  # accuracy: of Gauss
@@ -17,7 +17,7 @@ Values = Callable[[Array, Array], Array]
 def surface_points(breaks: Array, a: float, between: int = _BETWEEN) -> Array:
     """Return points x, m, along the surface, dense near ``breaks`` (b,), m, and up to two half-widths ``a`` beyond;
     ``between`` intervals from one break to the next."""
-    ends = np.concatenate([[breaks[0] - _BEYOND * a], breaks, [breaks[-1] + _BEYOND * a]])
+    ends = np.concatenate([[breaks[0] - _FAR * a], breaks, [breaks[-1] + _FAR * a]])
     ends = ends[np.append(True, np.diff(ends) > 1e-9 * a)]
     share = (1 - np.cos(np.linspace(0, np.pi, between + 1))) / 2
     return np.unique(np.concatenate([ends[:-1, None] + np.diff(ends)[:, None] * share]).ravel())
@@ -25,7 +25,7 @@ def surface_points(breaks: Array, a: float, between: int = _BETWEEN) -> Array:
 
 def depths(a: float, levels: int = _LEVELS) -> Array:
     """Return depths, m, from 0 to two half-widths ``a``, dense near the surface, in ``levels`` intervals."""
-    return _DEEP * a * np.linspace(0, 1, levels + 1) ** 2
+    return _FAR * a * np.linspace(0, 1, levels + 1) ** 2
 
 
 def largest_at(function: Values, x: Array, depth: Array, values: Array) -> tuple[float, float]:

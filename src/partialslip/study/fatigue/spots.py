@@ -13,7 +13,7 @@ from partialslip.study.fatigue.assessment import Assessment, Rating, assess
 from partialslip.study.fatigue.criteria import RUIZ, chosen
 from partialslip.tools.errors import InputError
 
-_ROUNDING = 1e-9  # accuracy: of p0: less is no tension
+_ROUNDING = 1e-9  # limit: of p0: less is no tension
 
 
 class HotSpot(msgspec.Struct, frozen=True):

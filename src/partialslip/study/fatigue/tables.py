@@ -13,8 +13,7 @@ from partialslip.scene import Scene
 from partialslip.scene.plan import plan
 from partialslip.scene.plausible import implausible
 from partialslip.scene.units import SI, Dimension, Units
-from partialslip.study.fatigue.accuracy import CriterionErrors
-from partialslip.study.fatigue.assessment import Assessment, Rating, Spot, rough_points
+from partialslip.study.fatigue.assessment import Assessment, CriterionErrors, Rating, Spot, rough_points
 from partialslip.study.fatigue.cycle import dense, stress_path
 from partialslip.study.fatigue.edges import Coefficient
 from partialslip.study.fatigue.places import OVER, depths, surface_points

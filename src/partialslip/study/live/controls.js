@@ -7,11 +7,9 @@ const page = (() => {
   const by = (id) => document.getElementById(id);
   const DIGITS = 5, LARGEST = 1e9;  // digits shown of a setting, and largest setting accepted
 
-  // P and |dQ| (N/m), |dsigma| (Pa), and e (m) at load points 1 and 2; `turn` is the sign of dQ, `mirror` the sign of
-  // dQ dsigma. Unless `varies`, P1 = P2 and e1 = e2 = 0.
-  const constant = (P) => ({ varies: false, P1: P, P2: P, e1: 0, e2: 0 });
+  // P and |dQ| (N/m), and |dsigma| (Pa); `turn` is the sign of dQ, `mirror` the sign of dQ dsigma.
   const start = {
-    varies: scene.varies, ...scene.pressed, f: scene.f, dQ: Math.abs(scene.dQ), dsigma: Math.abs(scene.dsigma),
+    P: scene.P, f: scene.f, dQ: Math.abs(scene.dQ), dsigma: Math.abs(scene.dsigma),
     turn: scene.dQ < 0 ? -1 : 1, mirror: scene.dQ * scene.dsigma < 0 ? -1 : 1,
   };
   if (scene.dQ === 0 && scene.dsigma < 0) start.turn = -1;
@@ -35,45 +33,41 @@ const page = (() => {
   }
   const minus = (text) => text.replace(/-(?=[\d.])/g, "\u2212");
 
-  // Solution for the loads, by the exact method. Lengths are scaled by a, pressures by p0, both of the larger P.
-  // hertz.js and varying.js solve for dQ, dsigma >= 0; `mirror` and `turn` give the solution for other signs.
+  // Solution for the loads, by the exact method. Lengths are scaled by a, pressures by p0. hertz.js solves for
+  // dQ, dsigma >= 0; `mirror` and `turn` give the solution for other signs.
   function answer(loads) {
-    const { P1, P2, e1, e2, dQ, dsigma, f, turn, mirror, varies } = loads;
-    const P = Math.max(P1, P2), { a, p0 } = pressed(P), Qf = dQ / (2 * f * P), sf = dsigma / (f * p0);
-    const contacts = [[P1, e1], [P2, e2]].map(([force, e]) => ({ a: Math.sqrt(force / P), e: e / a }));
+    const { P, dQ, dsigma, f, turn, mirror } = loads;
+    const { a, p0 } = pressed(P), Qf = dQ / (2 * f * P), sf = dsigma / (f * p0);
     const found = {
-      varies, P, P1, P2, e1, e2, a, p0, Qf, sf, f, turn, mirror, contacts, zone: null, stick: null, ends: null,
-      points: [], means: null, m: null, n: null, q: null, reverses: false, gradual: false,
+      P, a, p0, Qf, sf, f, turn, mirror, zone: null, stick: null, ends: null, points: [], means: null, m: null, n: null,
+      q: null, reverses: false, gradual: false,
     };
-    if (f === 0 && dQ === 0 && !scene.Q_mean) return { ...found, Qf: 0, sf: 0, regime: "frictionless" };
-    const [Q1, Q2] = [-1, 1].map((way) => Math.abs(scene.Q_mean + way * turn * dQ / 2));
-    if (!(Q1 < f * P1 && Q2 < f * P2)) return { ...found, regime: "sliding" };
+    if (!(Math.abs(scene.Q_mean) + dQ / 2 < f * P)) return { ...found, regime: "sliding" };
 
-    const solved = varies ? uneven(contacts.map((at) => ({ ...at, e: mirror * at.e })), Qf, sf) : even(Qf, sf);
-    const { zone, stick, ends, points, means = null } = solved, ascending = (one, two) => one - two;
-    const placed = stick && stick.map((x) => mirror * x).sort(ascending);
+    const solved = steady(Qf, sf), { stick, ends, points, means = null } = solved, ascending = (one, two) => one - two;
+    const placed = stick.map((x) => mirror * x).sort(ascending);
     const limits = means && means.map((limit) => turn * limit).sort(ascending), mean = scene.Q_mean / (f * P);
     const ratchets = limits && !(limits[0] <= mean && mean <= limits[1]);
     return {
       ...found,
       ...solved,
       stick: placed,
-      ends: ends && (mirror > 0 ? ends : [ends[1], ends[0]]),
+      ends: mirror > 0 ? ends : [ends[1], ends[0]],
       points: points.map(({ x, q }) => ({ x: mirror * x, q: turn * q })),
       means: limits,
-      m: zone && -placed[0],
-      n: zone && placed[1],
+      m: -placed[0],
+      n: placed[1],
       regime: ratchets ? "ratchets" : solved.regime,
     };
   }
 
   const tensile = ({ s }) => (s > 0 ? "small tension" : "large tension");
 
-  // The solution for constant P and e = 0. `ends`: direction of slip at the left and the right end, times `turn`.
-  function even(Qf, sf) {
+  // The steady state for Qf, sf >= 0. `ends`: direction of slip at the left and the right end, times `turn`.
+  function steady(Qf, sf) {
     const once = hertz.stickZone(Qf, sf), reverses = hertz.reverses(once, Qf, sf);
     const gradual = reverses ? hertz.gradualZone(scene.table, once, Qf, sf) : null, zone = gradual ?? once;
-    const found = { zone, stick: varying.ends(zone), ends: [zone.s, 1], regime: tensile(zone) };
+    const found = { zone, stick: [zone.centre - zone.c, zone.centre + zone.c], ends: [zone.s, 1], regime: tensile(zone) };
     if (gradual) {  // q and the limits of its mean depend on the way
       const same = gradual === once;
       return { ...found, gradual: true, points: same ? hertz.tractions(zone) : [], q: same ? hertz.largest(zone) : null };
@@ -84,48 +78,17 @@ const page = (() => {
     return { ...found, points: hertz.tractions(zone), q: hertz.largest(zone), reverses };
   }
 
-  // The solution for any P and e. `ends` has words of varying.js where no closed form exists.
-  function uneven(contacts, Qf, sf) {
-    const { zone, sticking, q, means } = varying.solve(contacts, Qf, sf), shared = varying.common(contacts);
-    const xs = q ? varying.grid(contacts, zone) : [], points = xs.map((x) => ({ x, q: q(x) }));
-    const found = { zone, points, means, q: q && varying.largest(xs, q) };
-    if (zone) {
-      const reverses = varying.reverses(contacts, Qf, sf, zone.s);
-      return { ...found, stick: varying.ends(zone), ends: [zone.s, 1], reverses, regime: tensile(zone) };
-    }
-    if (!(shared[0] < shared[1])) return { ...found, regime: "no stick zone" };
-    const whole = sticking.every((end) => end === "always");
-    const regime = !whole ? "no closed form" : Qf === 0 && sf === 0 ? "stuck" : "no slip";
-    return { ...found, stick: whole ? shared : null, ends: sticking, regime };
-  }
-
   const REGIMES = {
     stuck: "Q and \u03c3 do not change",
-    "no slip": "neither end slips, the whole contact sticks",
     "small tension": "both ends slip in the same direction",
     "large tension": "the ends slip in opposite directions",
-    "no stick zone": "the contacts at load points 1 and 2 do not overlap",
-    frictionless: "neither friction nor shear force: no stick zone, no sliding",
     sliding: "the whole contact slides: there is no stick zone",
     ratchets: "every cycle adds slip: the mean of Q is beyond the limits of a steady state; m and n are not reached",
   };
-  const STICKING = { always: "does not slip", partly: "slips during part of the cycle", never: "slips" };
-  const arrow = (sign) => (sign > 0 ? "\u2192" : "\u2190");
-
-  // The regime in words; for varying P or e also what either end does.
-  function meaning({ regime, varies, zone, ends, turn }) {
-    if (!varies || !(zone || regime === "no closed form") || regime === "ratchets") return REGIMES[regime];
-    const [left, right] = ends.map((end) => STICKING[end] ?? `slips ${arrow(turn * end)}`);
-    return `${zone ? "from load point 1 to 2 " : ""}the left end ${left}, the right end ${right}`;
-  }
-
-  function note({ regime, reverses, gradual, points, varies }) {
+  function note({ reverses, gradual, points }) {
     if (gradual) {
       return "Slip at one end turns round on the way. m and n are those of gradual loads, within 1e-4 a; " +
         (points.length ? "" : "q is not drawn, ") + "the limits of the mean of Q are not given: run the exact method.";
-    }
-    if (varies && regime !== "sliding" && !points.length) {
-      return "q has no closed form for these loads and is not drawn; the method march calculates it.";
     }
     return reverses ? "Under a gradual load path between these load points, slip at one end reverses. q then differs " +
       "from the closed form; march with load.steps gives the difference." : "";
@@ -133,18 +96,13 @@ const page = (() => {
 
   // [scaled, dimensional] values of the table.
   function numbers(found) {
-    const { P, a, p0, f, zone, contacts, m, n, q, means } = found, none = ["none", ""];
+    const { P, a, p0, f, zone, m, n, q, means } = found, none = ["none", ""];
     const length = (at) => engineering(at * a, "m", 6);
-    const force = (scaled) => [`${scaled.toFixed(5)} f P`, engineering(scaled * f * P, "N/m", 6)];
-    const [contact1, contact2] = contacts.map((at) => {
-      const ends = [at.e - at.a, at.e + at.a], sized = ends.map((x) => engineering(x * a, "m", 5));
-      return [`${ends.map((x) => x.toFixed(4)).join(" to ")} a`, sized.join(" to ")];
-    });
     const table = {
-      m: none, n: none, width: none, q: none, least: none, most: none, contact1, contact2, a: ["", length(1)],
-      p0: ["", engineering(p0, "Pa", 6)], ...limits(found),
+      m: none, n: none, width: none, q: none, most: none, a: ["", length(1)], p0: ["", engineering(p0, "Pa", 6)],
+      ...limits(found),
     };
-    if (means) [table.least, table.most] = means.map(force);
+    if (means) table.most = [`${means[1].toFixed(5)} f P`, engineering(means[1] * f * P, "N/m", 6)];
     if (q !== null) table.q = [`${q.toFixed(7)} f p0`, engineering(q * f * p0, "Pa", 6)];
     if (!zone) return table;
     const width = 2 * zone.c;
@@ -157,20 +115,16 @@ const page = (() => {
   }
 
   // dsigma at which large tension begins, and dQ at which the contact slides.
-  function limits({ varies, P, P1, P2, p0, f, turn, mirror, Qf, contacts }) {
-    const mean = turn * scene.Q_mean, slides = Math.max(2 * Math.min(f * P2 - mean, f * P1 + mean), 0);
-    const share = +(slides / (2 * f * P)).toFixed(5) || 0;  // 0/0 without friction
-    const table = {
-      slides: [share === 1 ? "2 f P" : `${share} \u00b7 2 f P`, engineering(slides, "N/m", 6)], turns: ["none", ""],
+  function limits({ P, p0, f, Qf }) {
+    const slides = Math.max(2 * (f * P - Math.abs(scene.Q_mean)), 0), share = +(slides / (2 * f * P)).toFixed(5);
+    const turns = Qf < 1 ? hertz.transition(Qf) : null;
+    return {
+      slides: [share === 1 ? "2 f P" : `${share} \u00b7 2 f P`, engineering(slides, "N/m", 6)],
+      turns: turns === null ? ["none", ""] : [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)],
     };
-    const start = varies ? varying.beginning(contacts.map((at) => ({ ...at, e: mirror * at.e })), Qf) : null;
-    const turns = varies ? start?.sf : Qf < 1 ? hertz.transition(Qf) : undefined;
-    if (turns !== undefined) table.turns = [`${turns.toFixed(5)} f p0`, engineering(turns * f * p0, "Pa", 6)];
-    return table;
   }
 
   // Controls of loads and friction: how to read and set each value, and the values allowed.
-  const larger = () => Math.max(loads.P1, loads.P2);
   const shear = () => loads.turn * loads.dQ, tension = () => loads.turn * loads.mirror * loads.dsigma;
   function sized(dQ, dsigma) {
     const turn = Math.sign(dQ) || Math.sign(dsigma) * loads.mirror || loads.turn;
@@ -179,24 +133,14 @@ const page = (() => {
   }
   const normal = shownIn(scene.P, "N/m"), force = shownIn(2 * scene.f * scene.P, "N/m");
   const stress = shownIn(scene.f * scene.p0, "Pa");
-  const distance = shownIn(scene.a, "m"), FARTHEST = 1e3 * scene.a / distance.factor;  // of e
   const nice = (value) => 10 ** Math.floor(Math.log10(value / 50));  // step of a slider that goes to 4 times the value
   const step = nice(scene.P / normal.factor);
-  const pressing = (key) => ({
-    get: (found) => found[key] / normal.factor, set: (value) => ({ [key]: value * normal.factor }), least: step / 1e6,
-  });
-  const line = (key) => ({
-    get: (found) => found[key] / distance.factor, set: (value) => ({ [key]: value * distance.factor }),
-    least: -FARTHEST, most: FARTHEST,
-  });
   const controls = {
-    P: { ...pressing("P"), set: (value) => constant(value * normal.factor) },
-    P1: pressing("P1"),
-    P2: pressing("P2"),
-    e1: line("e1"),
-    e2: line("e2"),
-    Qf: { get: ({ Qf }) => Qf, set: (value) => ({ dQ: value * 2 * loads.f * larger() }) },
-    sf: { get: ({ sf }) => sf, set: (value) => ({ dsigma: value * loads.f * pressed(larger()).p0 }) },
+    P: {
+      get: ({ P }) => P / normal.factor, set: (value) => ({ P: value * normal.factor }), least: step / 1e6,
+    },
+    Qf: { get: ({ Qf }) => Qf, set: (value) => ({ dQ: value * 2 * loads.f * loads.P }) },
+    sf: { get: ({ sf }) => sf, set: (value) => ({ dsigma: value * loads.f * pressed(loads.P).p0 }) },
     f: { get: ({ f }) => f, set: (value) => ({ f: value }), least: 1e-6 },
     dQ: { get: () => shear() / force.factor, set: (value) => sized(value * force.factor, tension()), least: -LARGEST },
     dsigma: {
@@ -205,16 +149,12 @@ const page = (() => {
   };
   const allowed = (name, value) => value >= (controls[name].least ?? 0) && value <= (controls[name].most ?? LARGEST);
 
-  // The link: P, or P1, P2, e1 and e2 if they vary, and f, dQ and dsigma, in SI units. A zero keeps its sign, which
-  // tells how the loads turn and are mirrored.
-  const SHOWN = {
-    P: normal, P1: normal, P2: normal, e1: distance, e2: distance, f: { factor: 1 }, dQ: force, dsigma: stress,
-  };
+  // The link: P, f, dQ and dsigma, in SI units. A zero keeps its sign, which tells how the loads turn and are mirrored.
+  const SHOWN = { P: normal, f: { factor: 1 }, dQ: force, dsigma: stress };
   const NUMBER = /^-?\d{1,20}(\.\d{1,20})?(e-?\d{1,3})?$/i;
   const sign = (value) => (value < 0 || Object.is(value, -0) ? -1 : 1);
   function link() {
-    const { varies, P1, P2, e1, e2, f } = loads;
-    const known = { ...(varies ? { P1, P2, e1, e2 } : { P: P1 }), f, dQ: shear(), dsigma: tension() };
+    const known = { P: loads.P, f: loads.f, dQ: shear(), dsigma: tension() };
     const text = (value) => (Object.is(value, -0) ? "-0" : String(+value.toPrecision(12)));
     return `#${Object.entries(known).map(([key, value]) => `${key}=${text(value)}`).join("&")}`;
   }
@@ -224,11 +164,10 @@ const page = (() => {
       const text = found.get(key) ?? "", value = Number(text);
       if (NUMBER.test(text) && allowed(key, value / factor)) given[key] = value;
     }
-    const { P, dQ, dsigma, ...others } = given, settings = { ...start, ...(P && constant(P)), ...others };
-    settings.varies ||= ["P1", "P2", "e1", "e2"].some((key) => key in given);
+    const { dQ, dsigma, ...others } = given;
     const signed = { dQ: dQ ?? start.turn * start.dQ, dsigma: dsigma ?? start.turn * start.mirror * start.dsigma };
     const turn = sign(signed.dQ), mirror = turn * sign(signed.dsigma);
-    return { ...settings, dQ: Math.abs(signed.dQ), dsigma: Math.abs(signed.dsigma), turn, mirror };
+    return { ...start, ...others, dQ: Math.abs(signed.dQ), dsigma: Math.abs(signed.dsigma), turn, mirror };
   }
   const REST = 400;  // ms: browsers refuse many changes of the address in a short time
   let resting = 0;
@@ -262,13 +201,8 @@ const page = (() => {
       }
     }
     by("opposite").checked = loads.mirror < 0;
-    by("varies").checked = loads.varies;
-    for (const part of document.querySelectorAll("[data-varies]")) {
-      part.hidden = (part.dataset.varies === "true") !== loads.varies;
-    }
-    document.querySelector("main").classList.toggle("varies", loads.varies);
     by("regime").textContent = `${found.regime}:`;
-    by("meaning").textContent = meaning(found);
+    by("meaning").textContent = REGIMES[found.regime];
     for (const [key, cells] of Object.entries(numbers(found))) {
       cells.forEach((text, column) => { by(`${key}-${column}`).textContent = minus(text); });
     }
@@ -294,9 +228,6 @@ const page = (() => {
       input.addEventListener("blur", show);
     }
     by("opposite").addEventListener("change", (event) => change({ mirror: event.target.checked ? -1 : 1 }));
-    by("varies").addEventListener("change", (event) => {
-      change(event.target.checked ? { varies: true } : constant(larger()));
-    });
     by("reset").addEventListener("click", () => change(start));
     addEventListener("hashchange", () => change(linked()));
   }
@@ -310,20 +241,14 @@ const page = (() => {
     show();
   }
 
-  const multiple = (value, of) => Math.ceil(value / of) * of, fine = nice(scene.a / distance.factor);
-  const reach = Math.max(0.5 * scene.a, 1.2 * Math.abs(start.e1), 1.2 * Math.abs(start.e2)) / distance.factor;
-  const far = multiple(reach, fine), most = multiple(4 * scene.P / normal.factor, step);
-  const ranges = { P: [step, most, step], e: [-far, far, fine] };
-  for (const key of ["P", "P1", "P2", "e1", "e2"]) {
-    const values = ranges[key[0]];
-    ["min", "max", "step"].forEach((name, i) => by(key).setAttribute(name, +values[i].toPrecision(12)));
-  }
+  const most = Math.ceil(4 * scene.P / normal.factor / step) * step;
+  Object.entries({ min: step, max: most, step }).forEach(([name, value]) => by("P").setAttribute(name, +value.toPrecision(12)));
   for (const [key, { label }] of Object.entries(SHOWN)) if (label) by(`${key}-unit`).textContent = label;
   loads = linked();
   by("link").href = link();
   listen();
   layOut();
-  const frames = ["tractions", "map"].map((id) => by(id).parentNode);  // the map is hidden while P or e vary
+  const frames = ["tractions", "map"].map((id) => by(id).parentNode);
   const sizes = () => frames.map((frame) => frame.clientWidth).join();
   let shown = sizes();
   const observer = new ResizeObserver(() => {
@@ -333,5 +258,5 @@ const page = (() => {
   });
   for (const frame of frames) observer.observe(frame);
 
-  return { answer: (changes = {}) => answer({ ...loads, ...changes }), loads: () => loads };
+  return { answer: () => answer(loads), loads: () => loads };
 })();

@@ -52,21 +52,19 @@ const figures = (() => {
 
   // Returns draw(answer): tractions and stick zone of the loads. `xLabel` gives the label of the axis for an answer.
   function tractions(svg, xLabel) {
-    let drawn = "", plot = null;
+    const plot = axes(svg, {
+      x: [-1.04, 1.04], y: [-1.1, 1.3], xTicks: [-1, -0.5, 0, 0.5, 1], yTicks: [-1, -0.5, 0, 0.5, 1], xLabel: "",
+      yLabel: "p/p0 and q/(f p0)",
+    });
+    const { toX, toY, box } = plot, grid = Array.from({ length: 61 }, (_, i) => -Math.cos(Math.PI * i / 60));
     return (answer) => {
-      const { contacts, stick, points, ends, turn, regime, varies } = answer, [left, right] = varying.union(contacts);
-      const range = [Math.floor(10 * Math.min(left, -1)) / 10, Math.ceil(10 * Math.max(right, 1)) / 10];
-      if (range.join() !== drawn) [drawn, plot] = [range.join(), tractionAxes(svg, range)];
-      const { toX, toY, box } = plot;
+      const { stick, points, ends, turn, regime } = answer;
       plot.across.textContent = xLabel(answer);
       plot.back.replaceChildren();
       plot.front.replaceChildren();
       const word = (low, high, text) => {
         if (toX(high) - toX(low) < ROOM || !text) return;
         element(plot.front, "text", { x: (toX(low) + toX(high)) / 2, y: box.top + 15, "text-anchor": "middle" }, text);
-      };
-      const curve = (kind, xs, of) => {
-        element(plot.back, "path", { class: kind, d: path(xs.map((x) => [toX(x), toY(of(x))])) });
       };
 
       if (stick) {
@@ -77,31 +75,19 @@ const figures = (() => {
         element(plot.back, "path", { class: "ends", d: sides.join("") });
       }
       element(plot.back, "path", { class: "zero", d: path([[box.left, toY(0)], [box.right, toY(0)]]) });
-      const grid = varying.grid(contacts);
-      for (const way of [1, -1]) curve("pressure", grid, (x) => way * varying.pressure(contacts, x));
-      contacts.forEach((contact, i) => {
-        if (varies) curve(`pressure-${i + 1}`, varying.grid([contact, contact]), (x) => varying.pressureOf(contact, x));
-      });
+      for (const way of [1, -1]) {
+        const bound = grid.map((x) => [toX(x), toY(way * hertz.pressure(x))]);
+        element(plot.back, "path", { class: "pressure", d: path(bound) });
+      }
       element(plot.back, "path", { class: "shear", d: path(points.map(({ x, q }) => [toX(x), toY(q)])) });
 
       const slip = (sign) => (sign > 0 ? "slip \u2192" : sign < 0 ? "\u2190 slip" : "");
-      if (regime === "sliding") word(left, right, "slides");
+      if (regime === "sliding") word(-1, 1, "slides");
       if (!stick) return;
-      word(left, stick[0], slip(turn * ends[0]));
+      word(-1, stick[0], slip(turn * ends[0]));
       word(stick[0], stick[1], "stick");
-      word(stick[1], right, slip(turn * ends[1]));
+      word(stick[1], 1, slip(turn * ends[1]));
     };
-  }
-
-  function tractionAxes(svg, [low, high]) {
-    const span = high - low, margin = 0.02 * span;
-    const step = span < 4 ? 0.5 : [1, 2, 5].map((one) => one * 10 ** Math.floor(Math.log10(span / 4)))
-      .findLast((one) => one <= span / 4);
-    const first = Math.ceil(low / step), count = Math.floor(high / step) - first + 1;
-    return axes(svg, {
-      x: [low - margin, high + margin], y: [-1.1, 1.3], yTicks: [-1, -0.5, 0, 0.5, 1],
-      xTicks: Array.from({ length: count }, (_, i) => step * (first + i)), xLabel: "", yLabel: "p/p0 and q/(f p0)",
-    });
   }
 
   // Returns draw(answer). Calls `move` with the loads (Qf, sf) to which the point is dragged or stepped.

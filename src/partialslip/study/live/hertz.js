@@ -225,5 +225,5 @@ const hertz = (() => {
     return taken;
   }
 
-  return { conditions, gradualZone, insideOf, largest, meanLoadBound, reverses, rule: RULE, stickZone, tractions, transition };
+  return { gradualZone, largest, meanLoadBound, pressure, reverses, stickZone, tractions, transition };
 })();

@@ -7,10 +7,9 @@ import numpy as np
 from partialslip.report import rows
 from partialslip.result import RATCHETS
 from partialslip.scene import Scene
-from partialslip.study.map.figure import ends_svg, map_svg
+from partialslip.study.map.figure import ends_svg, map_svg, varying_svg
 from partialslip.study.map.grid import StickMap
 from partialslip.study.map.varying import VaryingMap
-from partialslip.study.map.varying_figure import varying_svg
 from partialslip.tools.output.files import csv_text, write_texts
 
 

@@ -30,11 +30,11 @@ from partialslip.tools.errors import InputError
 
 _TOP = 10.0  # limit: largest sf, unless the scene's point is higher
 _HIGHEST = 40.0  # limit: largest sf of a scene's point on the map
-_COUNT = 50  # accuracy: steps along either axis
-_COUNT_KINKED = 25  # accuracy: the same for a pressure with corners, which is slower
+_COUNT = 50  # display: steps along either axis
+_COUNT_KINKED = 25  # display: the same for a pressure with corners, which is slower
 M_LEVELS = (0.2, 0.4, 0.6, 0.8, 0.9)  # display: of m on the map, in a
 N_LEVELS = (-0.8, -0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 0.8)  # display: of n on the map, in a
-_FINE = 200  # accuracy: points along either axis of the grid through which lines of gradual zones are drawn
+_FINE = 200  # display: points along either axis of the grid through which lines of gradual zones are drawn
 _NEXT = 0.04  # display: of the map: distance of the ends of parts of one line
 _AT_ONCE = 128  # cost: zones between two calls of progress
 _CONSTANT = np.array([0.2, 0.4, 0.6, 0.8])  # Qf of the curves over dsigma a/dQ, which is sf/(pi Qf)

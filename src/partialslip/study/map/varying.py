@@ -23,8 +23,8 @@ from partialslip.study.map.grid import Point, require_stick_zones
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 
-_COUNT = 50  # accuracy: steps along either axis
-_COUNT_KINKED = 15  # accuracy: the same for a pressure with corners, which is slower
+_COUNT = 50  # display: steps along either axis
+_COUNT_KINKED = 15  # display: the same for a pressure with corners, which is slower
 _PURPOSE = "for a map over dP and dQ"
 _ROUNDING = 1e-9  # accuracy: lengths in a
 

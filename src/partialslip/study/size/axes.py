@@ -15,9 +15,8 @@ from partialslip.run import run
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.plan import asks_for_stresses
-from partialslip.scene.reading import meant, parse_scene
+from partialslip.scene.reading import meant, parse_scene, scene_tables
 from partialslip.scene.units import Dimension, Units
-from partialslip.scene.writing import scene_tables
 from partialslip.study.batch.job import Job
 from partialslip.study.size.case import compared_methods, half_plane_method
 from partialslip.study.size.law import BEYOND, CLEAR

@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from partialslip.report.record import Record
 from partialslip.result.record import ResultRecord
-from partialslip.run.judge.known import error_of
+from partialslip.run.judge.reference import error_of
 from partialslip.scene import Scene
 from partialslip.scene.units import Dimension, Units
 from partialslip.study.batch.job import Job, Sharing

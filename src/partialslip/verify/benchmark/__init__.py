@@ -1,7 +1,5 @@
 """Numbered problems with frozen targets, for other codes to measure themselves by."""
 
-from partialslip.verify.benchmark.badge import badge as badge
-from partialslip.verify.benchmark.badge import badge_names as badge_names
 from partialslip.verify.benchmark.book import book_page as book_page
 from partialslip.verify.benchmark.book import book_zip as book_zip
 from partialslip.verify.benchmark.folder import read_submission as read_submission
@@ -19,6 +17,8 @@ from partialslip.verify.benchmark.problem import Target as Target
 from partialslip.verify.benchmark.problem import read_problems as read_problems
 from partialslip.verify.benchmark.scoreboard import Board as Board
 from partialslip.verify.benchmark.scoreboard import Standing as Standing
+from partialslip.verify.benchmark.scoreboard import badge as badge
+from partialslip.verify.benchmark.scoreboard import badge_names as badge_names
 from partialslip.verify.benchmark.scoreboard import scoreboard as scoreboard
 from partialslip.verify.benchmark.scoreboard import standing as standing
 from partialslip.verify.benchmark.submission import Answer as Answer

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from partialslip.result import Result
 from partialslip.run import run
-from partialslip.run.judge.means import means
+from partialslip.run.judge.measures import means
 from partialslip.run.judge.reference import reference
 from partialslip.scene import Hertz
 from partialslip.tools.arrays import Array
@@ -22,10 +22,10 @@ _DIGITS = 1e-9  # accuracy: uncertainty of exact solutions, in the scale of the 
 _FOLLOWED = 1e-6  # accuracy: uncertainty where slip turns round, unless the second way is farther off
 _ENDS = ("left_1", "right_1", "left_2", "right_2")
 _GRADUAL = "quadratures and an integral equation along the gradual path"
-_NEAR = 1e-3  # accuracy: another method that is farther off does not check the digits of an exact solution
+_NEAR = 1e-3  # limit: another method that is farther off does not check the digits of an exact solution
 _EVEN = 1e-4  # accuracy: of a: nearer to each other places are one
 _FINE = 1e-5  # accuracy: asked of march and fem; a hundredth of fem of finite bodies, which exact does not solve
-_CONSISTENT = 3.0  # accuracy: difference from a rough method, in its own estimate, that confirms a value
+_CONSISTENT = 3.0  # limit: difference from a rough method, in its own estimate, that confirms a value
 _STEPS = (16, 64, 256)  # accuracy: load steps from which slip is extrapolated, where it is of first order in them
 _PIECES = 31  # accuracy: points of a tabulated parabola
 

@@ -11,8 +11,8 @@ from partialslip.tools.convergence import extrapolated, fitted_order, grid_conve
 from partialslip.verify.benchmark.problem import Problem
 from partialslip.verify.benchmark.submission import Answer
 
-_CONSTANT = 0.01  # accuracy: largest deviation of the ratios of sizes, relative
-_HIGHEST = 8.0  # accuracy: order beyond which two values agree by chance
+_CONSTANT = 0.01  # limit: largest deviation of the ratios of sizes, relative
+_HIGHEST = 8.0  # limit: order beyond which two values agree by chance
 NOT_MONOTONE, NO_RATIO, MISSING = "not monotone", "no constant ratio", "not given"
 
 

@@ -7,8 +7,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from partialslip.codes.export import UNTESTED_DECKS
-from partialslip.codes.export.abaqus import abaqus_deck
-from partialslip.codes.export.calculix import calculix_deck
+from partialslip.codes.export.inp import abaqus_deck, calculix_deck
 from partialslip.codes.export.model import Model, modelled
 from partialslip.codes.export.named_boundaries import UNTESTED
 from partialslip.scene import Scene
@@ -19,7 +18,7 @@ from partialslip.verify.benchmark.problem import Problem
 
 _FORMATS = (".msh", ".inp", ".vtu")
 _WITH_H5PY = (".med",)
-_SIZE, GROWTH = 0.05, 0.2  # accuracy: elements of the meshes, in a
+GROWTH = 0.2  # accuracy: growth of the elements of the meshes
 STIFFER = 100.0  # accuracy: decks: half-planes neglect the slopes of the surfaces; those of such bodies are a hundredth
 
 
@@ -35,8 +34,8 @@ def files(problem: Problem) -> dict[str, bytes]:
     """
     scene = gradual(problem.scene)
     try:
-        made = modelled(scene, _SIZE, growth=GROWTH)
-        flat = modelled(scene, _SIZE, growth=GROWTH, stiffer=STIFFER)
+        made = modelled(scene, growth=GROWTH)
+        flat = modelled(scene, growth=GROWTH, stiffer=STIFFER)
     except InputError:
         return {}
     reading = f"partialslip benchmark read {problem.number} JOB.frd -o FOLDER"

@@ -10,9 +10,8 @@ from typing import Annotated, Any
 import msgspec
 
 from partialslip.scene import Scene
-from partialslip.scene.reading import load_scene, parse_scene
+from partialslip.scene.reading import load_scene, parse_scene, scene_toml
 from partialslip.scene.units import Dimension
-from partialslip.scene.writing import scene_toml
 from partialslip.tools.errors import InputError
 
 _PACKAGE = "partialslip.verify.benchmark"

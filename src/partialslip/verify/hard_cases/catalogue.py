@@ -1,6 +1,6 @@
 """The catalogue of hard cases: scenes on which contact codes may fail, reasons, and bars for each method.
 
-Cases are grouped in families by what is hard: loads, load histories, bodies, meshes or rigs, a module each.
+Cases are grouped in families by what is hard: loads, load histories, bodies or meshes, a module each.
 """
 
 import textwrap
@@ -9,8 +9,7 @@ from collections.abc import Iterable, Iterator
 from partialslip.scene.reading import load_scene, shipped_scenes
 from partialslip.tools.groups import grouped
 from partialslip.verify.case import Case
-from partialslip.verify.hard_cases import bodies, finite, histories, loads, meshes
-from partialslip.verify.hard_cases.scenes import Family
+from partialslip.verify.hard_cases import Family, bodies, histories, loads, meshes
 
 _HEAD = """# Hard cases
 
@@ -48,7 +47,7 @@ FAMILIES: tuple[Family, ...] = (  # in the order of the page
     loads.uneven_friction,
     loads.mirrored,
     histories.turning,
-    finite.plates,
+    bodies.plates,
 )
 
 

@@ -6,7 +6,7 @@ from typing import Any
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 from partialslip.verify.case import Case
-from partialslip.verify.hard_cases.scenes import MANY_CYCLES, family, hard_scene
+from partialslip.verify.hard_cases import MANY_CYCLES, family, hard_scene
 
 _SHARE = 0.64  # limit: smaller over larger P
 _INSIDE = 0.999  # limit: of the eccentricity at which the end stops slipping

@@ -7,7 +7,7 @@ import numpy as np
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.steady import transition
 from partialslip.verify.case import Case
-from partialslip.verify.hard_cases.scenes import MANY_STEPS, PEAKS, family, hard_scene
+from partialslip.verify.hard_cases import MANY_STEPS, PEAKS, family, hard_scene
 
 
 @family(

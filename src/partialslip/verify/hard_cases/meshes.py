@@ -11,12 +11,12 @@ from partialslip.run.judge import Bar
 from partialslip.scene import Scene
 from partialslip.tools.arrays import Array
 from partialslip.verify.case import Case
-from partialslip.verify.hard_cases.scenes import family, hard_scene
+from partialslip.verify.hard_cases import family, hard_scene
 from partialslip_meshes.blocks import block
 from partialslip_meshes.mesh import Mesh
 
-_WIDTH = 16.0  # accuracy: width of the blocks, in contact half-widths
-_ALONG = 0.05  # accuracy: element size along the contact, in contact half-widths
+_WIDTH = 16.0  # limit: width of the blocks, in contact half-widths
+_ALONG = 0.05  # limit: element size along the contact, in contact half-widths
 
 
 @family(

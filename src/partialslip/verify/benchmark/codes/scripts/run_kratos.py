@@ -22,7 +22,7 @@ import KratosMultiphysics.StructuralMechanicsApplication as SMA
 import numpy as np
 from KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis import StructuralMechanicsAnalysis
 
-_E = 1e4  # accuracy: Young's modulus of the lower body in the units of the model
+_E = 1e4  # fixed: Young's modulus of the lower body in the units of the model
 _SETTINGS = """{
     "problem_data": {"problem_name": "contact", "parallel_type": "OpenMP", "start_time": 0.0, "end_time": 1.0,
                      "echo_level": 0},

@@ -1,19 +1,23 @@
-"""Verdicts: how one quantity, or the regime, is judged: passed, missed or not judged, with a reason."""
+"""Bars, verdicts and outcomes: how one quantity, a result or a run is judged, with a reason.
+
+A comparison passes only if every headline quantity was judged and nothing is missed. The regime of the reference tells
+which quantities are the headline.
+"""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple, Self, TypeVar
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from partialslip.result import Result
-from partialslip.result.record import ResultRecord
-from partialslip.run.judge.known import base, error_of
-from partialslip.run.judge.measures import Measure, unsteady
+from partialslip.result.record import ResultRecord, plain
+from partialslip.run.judge.measures import Measure, calls, unsteady
+from partialslip.run.judge.reference import base, error_of
 from partialslip.scene import Scene
-from partialslip.tools.bars import BARS, CERTIFICATE_BAR
+from partialslip.tools.bars import BARS, CERTIFICATE_BAR, LEAST_SHEAR
 
 # Bars on traction errors, in multiples of the accuracy asked of a, m and n.
 P_BAR, Q_BAR = BARS["p"], BARS["q"]
@@ -24,7 +28,27 @@ READ = "read"  # fixed: setting of a result that was read from a table
 _TENSIONS = {"small tension", "large tension"}
 _STICKING = {"sticking ends", "no slip"}  # regimes of varying pressure in which an end does not slip throughout
 
-_Value = TypeVar("_Value", float | str | None, float | None)
+# limit: Largest ratio of a true error to the method's own estimate of it.
+MOST = 2.0
+#: Prefix of the quantity of a verdict on an estimate.
+ESTIMATE = "estimate of "
+# Estimates do not include rounding: 1e-9 a, or 1e-9 of f p, as in the residuals of converged solvers. Errors of the
+# shear are relative to its norm, or to a part of the norm of f p where the shear is smaller.
+_ROUNDING = {"q": 1e-9 / LEAST_SHEAR, "q1": 1e-9 / LEAST_SHEAR, "q2": 1e-9 / LEAST_SHEAR}
+_NOTHING = 0.01  # limit: of the bar: errors that matter to nobody need no estimate
+_STICK = ("a", "m", "n", "p", "q")  # with a stick zone
+#: Quantities that must be judged, by the regime of the reference where there is no stick zone to ask for. The regime
+#: itself must be judged there: nothing else says that nothing sticks.
+_OTHERS: Mapping[str, tuple[str, ...]] = {
+    "sliding": ("regime", "a", "p", "q"),  # q = f p
+    "frictionless": ("regime", "a", "p", "q"),  # q = 0
+    "ratchets": ("regime", *_STICK),  # asked for, and never judged: there is no steady state
+}
+#: Quantities that must be judged where both results have them and they have a bar: what comes beside a, p and q where
+#: the contact is not even, the pressure varies, or the shear at the load points is known.
+_WHERE_KNOWN = ("left", "right", "left_1", "right_1", "left_2", "right_2", "p_1", "q1", "q2")
+
+PASSED, MISSED, UNJUDGED = 0, 1, 4  # fixed: exit codes
 
 
 class Outcome(StrEnum):
@@ -88,14 +112,7 @@ class Verdict:
     @property
     def finite(self) -> Self:
         """The verdict for JSON: Python floats, with None in place of NaN and infinity."""
-        return replace(
-            self,
-            reference=_known(self.reference),
-            found=_known(self.found),
-            error=_known(self.error),
-            bar=_known(self.bar),
-            estimate=_known(self.estimate),
-        )
+        return plain(self)
 
     @property
     def text(self) -> str:
@@ -103,12 +120,6 @@ class Verdict:
         if self.error is None or self.bar is None or not math.isfinite(self.error):
             return f"{self.quantity}: {self.reason or self.outcome}"
         return f"{self.quantity}: error {self.error:.3g} {'<=' if self.error <= self.bar else '>'} {self.bar:.3g}"
-
-
-def _known(value: _Value) -> _Value | None:
-    if not isinstance(value, float):
-        return value
-    return float(value) if math.isfinite(value) else None
 
 
 def judged(error: float, bar: float, unsure: float = 0.0) -> Outcome:
@@ -121,7 +132,7 @@ def judged(error: float, bar: float, unsure: float = 0.0) -> Outcome:
 def read_to(quantity: str, result: Result | ResultRecord) -> float:
     """Return what a table tells of a length to, in a: the error estimate of reading it. 0 for results that are not read
     from a table, and for quantities that are compared like with like."""
-    key = quantity.removesuffix("_1").removesuffix("_2")
+    key = base(quantity)
     if READ not in result.settings or key not in result.estimate:
         return 0.0
     found = result.estimate[key]
@@ -207,16 +218,16 @@ def judge_regime(
         outcome, reason = Outcome.NOT_JUDGED, own.reason or NO_BAR
     elif found == true:
         outcome, reason = Outcome.PASSED, ""
-    elif "m" in unknown:
-        outcome, reason = Outcome.NOT_JUDGED, unknown["m"]
-    elif not all(map(math.isfinite, own_errors)):
-        outcome, reason = Outcome.NOT_JUDGED, f"{reference.method} has no error estimate of m and n"
-    elif why := unsteady(result, reference) or _untold(result, reference):
-        outcome, reason = Outcome.NOT_JUDGED, why
-    elif near := _too_near(result, reference, width * reference.a) or _barely(result, reference, scene, width):
-        outcome, reason = Outcome.NOT_JUDGED, near
     else:
-        outcome, reason = Outcome.MISSED, f"{found}, not {true}"
+        why = (
+            unknown.get("m")
+            or ("" if all(map(math.isfinite, own_errors)) else f"{reference.method} has no error estimate of m and n")
+            or unsteady(result, reference)
+            or _untold(result, reference)
+            or _too_near(result, reference, width * reference.a)
+            or _barely(result, reference, scene, width)
+        )
+        outcome, reason = (Outcome.NOT_JUDGED, why) if why else (Outcome.MISSED, f"{found}, not {true}")
     return Verdict("regime", outcome, true, found, reason=reason)
 
 
@@ -239,12 +250,8 @@ def _too_near(result: Result, reference: Result, width: float) -> str:
 
 def _untold(result: Result, reference: Result) -> str:
     """Return which result does not tell whether it ratchets, as the other one does, and why."""
-    if "ratchets" not in {result.regime, reference.regime}:
-        return ""
-    calls = (
-        f"{each.method}: {each.undetermined['regime']}" for each in (result, reference) if "regime" in each.undetermined
-    )
-    return next(calls, "")
+    ratchets = "ratchets" in {result.regime, reference.regime}
+    return next(iter(calls("regime", result, reference)), "") if ratchets else ""
 
 
 def _barely(result: Result, reference: Result, scene: Scene, share: float) -> str:
@@ -258,15 +265,18 @@ def _barely(result: Result, reference: Result, scene: Scene, share: float) -> st
     return "the mean of Q is nearer to the bound for a steady state than the bar can tell"
 
 
-def conditions(result: Result) -> tuple[Verdict, ...]:
+def conditions(result: Result | ResultRecord, told: Iterable[Verdict] = ()) -> tuple[Verdict, ...]:
     """Judge a ``result`` alone, without a reference.
 
     ``finite`` counts the numbers that are NaN or infinite, and must be 0. Each residual of the certificate must be at
-    most :data:`partialslip.tools.bars.CERTIFICATE_BAR`.
+    most :data:`partialslip.tools.bars.CERTIFICATE_BAR`. A number that was not finite is None in a file. Those ``told``
+    in the file count, too: an end of a stick zone may also be None because there is none.
     """
-    lost = _not_finite(result)
+    counted = (verdict.error for verdict in told if verdict.quantity == "finite")
+    lost = max(_not_finite(result), *(int(each or 0) for each in counted), 0)
     reason = f"NaN or infinite: {lost:,} of the result's numbers" if lost else ""
     finite = Verdict("finite", judged(lost, 0.0), error=float(lost), bar=0.0, reason=reason, scale="numbers")
+    residuals = {name: math.nan if value is None else value for name, value in result.certificate.items()}
     certificate = (
         Verdict(
             f"certificate {name}",
@@ -276,18 +286,167 @@ def conditions(result: Result) -> tuple[Verdict, ...]:
             reason="" if math.isfinite(residual) else NAN,
             scale="f p0 or f P",
         )
-        for name, residual in result.certificate.items()
+        for name, residual in residuals.items()
     )
     return finite, *certificate
 
 
-def _not_finite(result: Result) -> int:
-    """Return how many numbers of a result are NaN or infinite."""
+def _not_finite(result: Result | ResultRecord) -> int:
+    """Return how many numbers of a result are NaN or infinite; None counts in a file, but for ends of a stick zone."""
     traction, slip = result.traction, result.slip
-    arrays = [traction.x, traction.p, traction.dq, traction.q1, traction.q2, traction.p1]
-    arrays += [slip.x, slip.slip, np.array(slip.dissipated)] if slip else []
-    numbers = [result.a, result.p0, result.stick_centre, result.stick_half_width]
-    numbers += [*result.certificate.values(), *result.estimate.values(), *result.limits.values()]
-    numbers += [end for pair in result.ends for end in pair]
-    arrays.append(np.array([number for number in numbers if number is not None]))
-    return sum(int((~np.isfinite(array)).sum()) for array in arrays if array is not None)
+    ends = result.ends if isinstance(result, Result) else result.contact_ends
+    zone = [each for each in (result.stick_centre, result.stick_half_width) if each is not None]
+    numbers: list[Any] = [[result.a, result.p0, *zone], *ends]
+    numbers += [[*some.values()] for some in (result.certificate, result.estimate, result.limits)]
+    numbers += [slip.x, slip.slip, slip.dissipated] if slip else []
+    if traction:
+        numbers += [traction.x, traction.p, traction.dq, traction.q1, traction.q2, traction.p1]
+    return sum(int((~np.isfinite(np.array(each, float))).sum()) for each in numbers if each is not None)
+
+
+def estimate_verdicts(verdicts: Iterable[Verdict], reference: Result) -> Iterator[Verdict]:
+    """Yield a verdict on each estimate in ``verdicts``: the true error must be at most twice the estimate.
+
+    Parameters
+    ----------
+    verdicts : iterable of Verdict
+        Verdicts of a comparison with ``reference``. Those without an estimate or an error, and those that are not
+        judged for another reason than that there is no bar, are left out.
+    reference : Result
+        Its own error is added to the bar. No estimate that is smaller than this error is judged.
+    """
+    for verdict in verdicts:
+        unknown = verdict.outcome is Outcome.NOT_JUDGED and verdict.reason != NO_BAR
+        if verdict.estimate is None or verdict.error is None or unknown:
+            continue
+        least = max(_ROUNDING.get(verdict.quantity, 1e-9), _NOTHING * (verdict.bar or 0.0))
+        bar = plus_estimate(Bar(max(MOST * verdict.estimate, least)), verdict.quantity, reference)
+        outcome = Outcome.NOT_JUDGED if bar.value is None else judged(verdict.error, bar.value)
+        yield Verdict(
+            f"{ESTIMATE}{verdict.quantity}",
+            outcome,
+            error=verdict.error,
+            bar=bar.value,
+            reason=f"estimated to be {verdict.estimate:.1e}" if outcome is Outcome.MISSED else "",
+            scale=verdict.scale,
+        )
+
+
+@dataclass(frozen=True)
+class Conclusion:
+    """What verdicts amount to.
+
+    Parameters
+    ----------
+    outcome : Outcome
+    missed : tuple of str
+        Missed verdicts as text.
+    unjudged : tuple of str
+        Headline quantities that were not judged.
+    asked : bool
+        Whether there were bars. Without bars the outcome is NOT_JUDGED, or MISSED if a condition is missed.
+    """
+
+    outcome: Outcome
+    missed: tuple[str, ...] = ()
+    unjudged: tuple[str, ...] = ()
+    asked: bool = True
+
+    @property
+    def text(self) -> str:
+        """The outcome in words, with what was missed or not judged."""
+        if self.outcome is Outcome.MISSED:
+            return "missed: " + "; ".join(self.missed)
+        if self.outcome is Outcome.PASSED:
+            return "all bars met"
+        if not self.asked:
+            return "no bars"
+        return f"not judged: {', '.join(self.unjudged) or 'no result beside the reference claims to hold'}"
+
+    @property
+    def code(self) -> int:
+        """Exit code: 1 if missed, 4 if bars were asked for and headline quantities were not judged, 0 otherwise."""
+        if self.outcome is Outcome.MISSED:
+            return MISSED
+        return UNJUDGED if self.outcome is Outcome.NOT_JUDGED and self.asked else PASSED
+
+
+def headline(verdicts: Iterable[Verdict]) -> tuple[str, ...]:
+    """Return the quantities that must be judged, by the regime of the reference in ``verdicts``.
+
+    Without a verdict on the regime these are the regime and the quantities of a stick zone.
+    """
+    known = {verdict.quantity: verdict for verdict in verdicts}
+    regime = known["regime"].reference if "regime" in known else None
+    required = _OTHERS.get(str(regime), _STICK if regime else ("regime", *_STICK))
+    further = (key for key in _WHERE_KNOWN if key in known and known[key].known and known[key].reason != NO_BAR)
+    return (*required, *further)
+
+
+def conclude(
+    verdicts: Iterable[Verdict], conditions: Iterable[Verdict] = (), waived: Collection[str] = ()
+) -> Conclusion:
+    """Return what ``verdicts`` on one comparison and the ``conditions`` of its result amount to.
+
+    MISSED if any of them is missed; PASSED if every headline quantity was judged; NOT_JUDGED otherwise. Passed
+    ``conditions`` alone do not pass a result.
+
+    Parameters
+    ----------
+    verdicts : iterable of Verdict
+        One per quantity, with that on the regime.
+    conditions : iterable of Verdict
+        Checks of the result alone.
+    waived : collection of str
+        Headline quantities that need not be judged.
+    """
+    verdicts = tuple(verdicts)
+    judged = {verdict.quantity for verdict in verdicts if verdict.outcome is not Outcome.NOT_JUDGED}
+    asked = bool(judged) or any(verdict.bar is not None for verdict in verdicts)
+    unjudged = tuple(key for key in headline(verdicts) if key not in judged and key not in waived) if asked else ()
+    missed = tuple(verdict.text for verdict in (*verdicts, *conditions) if verdict.outcome is Outcome.MISSED)
+    passed = asked and bool(judged) and not unjudged
+    return Conclusion(_outcome(bool(missed), passed), missed, unjudged, asked)
+
+
+def together(conclusions: Iterable[Conclusion]) -> Conclusion:
+    """Return what several ``conclusions`` amount to: PASSED only if all that had bars passed, and one had."""
+    conclusions = tuple(conclusions)
+    missed = tuple(text for each in conclusions for text in each.missed)
+    unjudged = tuple(dict.fromkeys(key for each in conclusions for key in each.unjudged))
+    asked = [each for each in conclusions if each.asked]
+    passed = bool(asked) and all(each.outcome is Outcome.PASSED for each in asked)
+    return Conclusion(_outcome(bool(missed), passed), missed, unjudged, bool(asked))
+
+
+def of_run(compared: Mapping[str, Conclusion], missed: Iterable[str], hold: Mapping[str, bool]) -> Conclusion:
+    """Return what a run of several methods amounts to.
+
+    Parameters
+    ----------
+    compared : mapping of str to Conclusion
+        Conclusions by method; none for the reference.
+    missed : iterable of str
+        What any method, the reference included, missed, as text.
+    hold : mapping of str to bool
+        By method, whether the result claims to hold. A closed form that says that it does not hold for the scene needs
+        not pass; nor does it make a run pass.
+    """
+    asking = [each for name, each in compared.items() if hold[name]]
+    whole, missed = together(asking or compared.values()), tuple(missed)
+    passed = bool(asking) and whole.outcome is Outcome.PASSED
+    return Conclusion(_outcome(bool(missed), passed), missed, whole.unjudged, whole.asked)
+
+
+def missed_by(verdicts: Mapping[str, Iterable[Verdict]]) -> tuple[str, ...]:
+    """Return missed ``verdicts``, by method, as text."""
+    return tuple(
+        f"{name}: {verdict.text}"
+        for name, some in verdicts.items()
+        for verdict in some
+        if verdict.outcome is Outcome.MISSED
+    )
+
+
+def _outcome(missed: bool, passed: bool) -> Outcome:
+    return Outcome.MISSED if missed else Outcome.PASSED if passed else Outcome.NOT_JUDGED

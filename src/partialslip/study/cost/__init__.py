@@ -1,1 +1,0 @@
-"""The study of cost: CPU seconds against accuracy, and the price list fitted to them."""

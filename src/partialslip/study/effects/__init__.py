@@ -1,1 +1,0 @@
-"""The study of effects: changes and costs caused by each effect."""
