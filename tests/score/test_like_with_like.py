@@ -232,7 +232,8 @@ def test_points_below_the_surface_are_not_averaged(tmp_path):
     data = {"p": np.append(p, 0 * p), "dq": np.append(dq, 0 * dq)}
     meshio.write(tmp_path / "t.vtu", meshio.Mesh(points, [("vertex", np.arange(122)[:, None])], point_data=data))
     with pytest.raises(
-        InputError, match=r"rows at equal x differ by 100% in p.*; Points:1 is 0, .*keep one, as by --where"
+        InputError,
+        match=r"rows at equal x differ by 100% in p.*; Points:1 is 0, .*keep one, as by --where \"Points:1=0\"",
     ):
         score(SCENE, tmp_path / "t.vtu")
 
