@@ -258,18 +258,6 @@ def test_a_contact_beyond_its_table_is_refused():
 # --- how the two unknowns are found
 
 
-@pytest.mark.parametrize("shape", [HertzShape(), Punch(0.5)])
-def test_bracketing_finds_the_same(shape):
-    random = np.random.default_rng(5)
-    Qf, sf = random.random(50), 12 * random.random(50)
-    (edge, c), (other_edge, other_c) = (way(Qf, sf, shape) for way in (steady._edge_and_centre, steady._bracketed))
-    assert (np.sign(edge) == np.sign(other_edge)).all()
-    assert edge == pytest.approx(other_edge, rel=0, abs=1e-11)
-    assert c == pytest.approx(other_c, rel=1e-11)
-    assert (edge < 0).sum() > 20
-    assert (edge > 0).sum() > 5
-
-
 def test_newton_always_ends_for_hertz(monkeypatch):
     """20,000 loads, to within 1e-6 of sliding, down to 1e-12 of it, to tensions of 300, and around the transition."""
 

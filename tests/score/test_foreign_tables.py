@@ -108,6 +108,7 @@ def test_centre_auto_puts_x_in_the_middle(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("table", "columns", "said"),
     [
+        ("1,2,3,4\n4,5,6,7", None, "line 1: must be a header line"),
         ("x,p,CSHEAR1,TAUR\n1,2,3,4", None, "column 'q': must be there once, not 2 times"),
         ("x,p,dq\n1,2,3", {"x": "x", "p": "p", "dq": "s"}, "--columns s: .*has the columns 'x', 'p', 'dq'"),
         ("x,p,dq\n1,2,3", {"x": "9", "p": "p", "dq": "dq"}, "--columns 9: "),

@@ -64,7 +64,7 @@ def test_point_data(tmp_path):
     assert read_tractions(tmp_path / "t.vtu", SCENE).p1 == pytest.approx(p1)
     del mesh.point_data["p1"]
     meshio.write(tmp_path / "t.vtu", mesh)
-    with pytest.raises(InputError, match="must have p and p1, and one of dq"):
+    with pytest.raises(InputError, match="must include p1, p at load point 1"):
         read_tractions(tmp_path / "t.vtu", SCENE)
 
 

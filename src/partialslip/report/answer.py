@@ -142,8 +142,13 @@ def _profile_rows(run: Run) -> Iterator[tuple[str, str]]:
     if not isinstance(run.scene.profile, Tabulated) or (known := run.scene.profile.measured) is None:
         return
     names = {factor: name for name, factor in reversed(LENGTHS.items())}
-    x, gap = (names.get(float(f"{unit:.12g}"), f"{unit:g} m") for unit in known.unit)
-    yield "points of the profile", f"{known.points} of {Path(known.file).name}, x in {x}, gap in {gap}"
+    x, gap = (names.get(float(f"{abs(unit):.12g}"), f"{abs(unit):g} m") for unit in known.unit)
+    told = f"{known.points} of {Path(known.file).name}, x in {x}, {'gap' if known.unit[1] > 0 else 'heights'} in {gap}"
+    if known.columns != (1, 2):
+        told += f", columns {known.columns[0]} and {known.columns[1]}"
+    if known.centre:
+        told += f", x = 0 at {run.scene.units.labelled(known.centre, 'm', 4)}"
+    yield "points of the profile", told
 
 
 def _noise(run: Run) -> Iterator[tuple[str, str]]:

@@ -11,7 +11,6 @@ from partialslip.report.rows import shown_half_planes
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Friction, Scene, Tabulated
-from partialslip.scene.measured import read_points
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 from partialslip.tools.methods import METHODS
@@ -234,7 +233,7 @@ def profile_svg(scene: Scene) -> str:
     if not isinstance(profile, Tabulated) or profile.measured is None:
         return ""
     try:
-        x, gap = read_points(profile.measured.file, profile.measured.unit)
+        x, gap = profile.measured.read()
     except InputError:
         return ""
     unit, length = "mm", 1e-3
