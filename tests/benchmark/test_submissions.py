@@ -13,15 +13,7 @@ from partialslip.cli import main
 from partialslip.run import run
 from partialslip.tools.output.files import json_text
 from partialslip.tools.output.lock import locked
-from partialslip.verify.benchmark import (
-    Answer,
-    Meta,
-    Submission,
-    book_zip,
-    read_problems,
-    read_submission,
-    scoreboard,
-)
+from partialslip.verify.benchmark import Answer, Meta, Submission, book_zip, read_problems, read_submission, scoreboard
 from partialslip.verify.benchmark.codes import CODES, code_answers
 from partialslip.verify.benchmark.codes.own import Own
 from partialslip.verify.benchmark.problem import read_frozen

@@ -23,10 +23,7 @@ PLANES = {
     "fatemi-socie": lambda stress: fatemi_socie(stress, E, NU, K, SIGMA_Y),
     "findley": lambda stress: findley(stress, K),
 }
-INVARIANTS = {
-    "dang van": lambda stress: dang_van(stress, ALPHA),
-    "crossland": lambda stress: crossland(stress, ALPHA),
-}
+INVARIANTS = {"dang van": lambda stress: dang_van(stress, ALPHA), "crossland": lambda stress: crossland(stress, ALPHA)}
 ALL = PLANES | INVARIANTS
 
 

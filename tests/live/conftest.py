@@ -97,11 +97,7 @@ class Browser:
 
     def drag(self, start, end):
         """Drag the mouse from ``start`` to ``end`` (x and y on the page)."""
-        for way, (x, y), buttons in (
-            ("mousePressed", start, 1),
-            ("mouseMoved", end, 1),
-            ("mouseReleased", end, 0),
-        ):
+        for way, (x, y), buttons in (("mousePressed", start, 1), ("mouseMoved", end, 1), ("mouseReleased", end, 0)):
             self.send("Input.dispatchMouseEvent", type=way, x=x, y=y, button="left", buttons=buttons, clickCount=1)
 
     def picture(self, path):
