@@ -20,16 +20,10 @@ from partialslip.scene.measured import ProfileFile
 
 DOCS = Path(__file__).parents[1] / "docs"
 TABLES = {
-    "Scene": [scene.Scene],
-    "material": [scene.Material],
-    "profile": [*get_args(scene.Profile), ProfileFile],
-    "friction": [scene.Friction],
-    "load": [scene.Load],
-    "bodies": [bodies.Bodies, bodies.Body, bodies.Holder],
-    "fem": [scene.Fem],
-    "effects": [scene.Effects],
-    "fatigue": [scene.Fatigue],
-}
+    "Scene": [scene.Scene], "material": [scene.Material], "profile": [*get_args(scene.Profile), ProfileFile],
+    "friction": [scene.Friction], "load": [scene.Load], "bodies": [bodies.Bodies, bodies.Body, bodies.Holder],
+    "fem": [scene.Fem], "effects": [scene.Effects], "fatigue": [scene.Fatigue],
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -120,11 +114,9 @@ def test_scene_file_reference_is_what_is_read(heading):
     for kind, table in zip(TABLES[heading], tables, strict=True):
         info = msgspec.inspect.type_info(kind)
         listed = {key: row for key, row in table.items() if not (key == "kind" and info.tag_field)}
-        inner = (
-            {"material", "profile", "load", "friction", "bodies", "fem", "effects", "fatigue"}
-            if kind is scene.Scene
-            else set()
-        )
+        inner = ({
+            "material", "profile", "load", "friction", "bodies", "fem", "effects", "fatigue",
+        } if kind is scene.Scene else set())  # fmt: skip
         assert listed.keys() == {field.encode_name for field in info.fields} - inner
         for field in info.fields:
             if field.encode_name in listed:

@@ -62,18 +62,11 @@ def test_the_path_is_searched_for_a_python(tmp_path, monkeypatch):
     assert GetFEM(0.1).version == "9.9"
 
 
-@pytest.mark.parametrize(
-    ("does", "said"),
-    [
-        ("sys.exit('no memory')", "failed: no memory"),
-        ("print('nothing')", "failed: nothing"),
-        ("print(json.dumps({'unknowns': 7, 'gave_up': 'press'}))", "did not converge in step 'press'"),
-        (
-            "open(told['table'], 'w').write('x,p\\n'); print(json.dumps({'unknowns': 7, 'gave_up': None}))",
-            "no results: ",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("does", "said"), [
+    ("sys.exit('no memory')", "failed: no memory"), ("print('nothing')", "failed: nothing"),
+    ("print(json.dumps({'unknowns': 7, 'gave_up': 'press'}))", "did not converge in step 'press'"),
+    ("open(told['table'], 'w').write('x,p\\n'); print(json.dumps({'unknowns': 7, 'gave_up': None}))", "no results: "),
+])  # fmt: skip
 @pytest.mark.parametrize("name", COARSE)
 def test_a_code_that_fails_answers_with_a_note(name, does, said, tmp_path, monkeypatch):
     stand_in(tmp_path, monkeypatch, name, does)
@@ -159,15 +152,12 @@ def test_bodies_that_turn_and_meshes_that_do_not_match_are_not_offered(name, num
     assert code_answers(name, {number: PROBLEMS[number]}).answers == {}
 
 
-@pytest.mark.parametrize(
-    ("does", "said"),
-    [
-        ("exit 201", "gave up with exit code 201"),
-        ("echo ' *ERROR in cascade: zero coefficient'; exit 201", "gave up: *ERROR in cascade: zero coefficient"),
-        ("printf 'SUMMARY\\n STEP\\n 1 1\\n 3 1 1U\\n' > job.sta; exit 201", "gave up in step 3 with exit code 201"),
-        ("echo 'Job finished'; : > job.frd", "no results: "),
-    ],
-)
+@pytest.mark.parametrize(("does", "said"), [
+    ("exit 201", "gave up with exit code 201"),
+    ("echo ' *ERROR in cascade: zero coefficient'; exit 201", "gave up: *ERROR in cascade: zero coefficient"),
+    ("printf 'SUMMARY\\n STEP\\n 1 1\\n 3 1 1U\\n' > job.sta; exit 201", "gave up in step 3 with exit code 201"),
+    ("echo 'Job finished'; : > job.frd", "no results: "),
+])  # fmt: skip
 def test_calculix_that_gives_up_answers_with_a_note(does, said, tmp_path, monkeypatch):
     """Results of an unfinished job are not those of the problem."""
     program = tmp_path / "ccx"

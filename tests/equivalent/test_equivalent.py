@@ -197,14 +197,10 @@ def test_large_tension():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "loads",
-    [
-        ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]"),
-        ("load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]"),
-    ],
-    ids=["mean loads", "out of phase"],
-)
+@pytest.mark.parametrize("loads", [
+    ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]"),
+    ("load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]"),
+], ids=["mean loads", "out of phase"])  # fmt: skip
 def test_other_loads(loads):
     scene = load_scene("hertz-large-tension", [*both(12e-3, 6e-3), *loads, "load.cycles=3", "fem.accuracy=1e-3"])
     found, own, fem = errors(scene)
@@ -324,15 +320,12 @@ def test_contacts_out_of_range_are_refused_before_they_are_marched(scene):
         stand_ins(scene.replace(load={"Q": [1e5, 0, -1e5], "sigma": [0, 1e8, 0]}), rig)
 
 
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ((), "bodies: must have upper or lower"),
-        ((*BLOCKS, "material.upper={E=2e11, nu=0.3}"), "material.upper, material.lower: the bodies differ"),
-        ((*BLOCKS, "load={P=[5e5, 6e5], Q=[-1e5, 1e5]}"), "load.P: must be constant"),
-        (both(3e-3, 3e-3), "bodies: must be larger compared with the contact"),
-    ],
-)
+@pytest.mark.parametrize(("settings", "said"), [
+    ((), "bodies: must have upper or lower"),
+    ((*BLOCKS, "material.upper={E=2e11, nu=0.3}"), "material.upper, material.lower: the bodies differ"),
+    ((*BLOCKS, "load={P=[5e5, 6e5], Q=[-1e5, 1e5]}"), "load.P: must be constant"),
+    (both(3e-3, 3e-3), "bodies: must be larger compared with the contact"),
+])  # fmt: skip
 def test_what_half_planes_cannot_stand_for_is_refused(settings, said):
     with pytest.raises(InputError, match=said):
         run(load_scene(SCENE, list(settings)), ["equivalent"])

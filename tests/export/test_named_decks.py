@@ -25,15 +25,12 @@ SCENE = "hertz-large-tension"
 PULLED = ["bodies.upper={kind='pad', width=0.02, height=0.01, holder={width=0.03, height=0.01}}",
           "bodies.lower={width=0.06, height=0.01, support='roller', pulled=true}"]  # fmt: skip
 SCENES = {
-    "half-planes": [],
-    "clamped block": ["bodies.lower={width=0.012, height=0.008}"],
-    "pulled": PULLED,
+    "half-planes": [], "clamped block": ["bodies.lower={width=0.012, height=0.008}"], "pulled": PULLED,
     "rollers": [f"bodies.{name}={{width=0.016, height=0.008, support='roller'}}" for name in ("lower", "upper")],
     "unlike": ["material.upper={E=2e11, nu=0.3}", "load.sigma=[0, 0]"],
     "varying": ["load={P=[4e5, 8e5], Q=[-1e5, 1e5], sigma=[0, 4e7], steps=3, cycles=2}"],
-    "pressed": ["load.Q=[0, 0]", "load.sigma=[0, 0]", "friction.f=0"],
-    "N-mm": ["shown_in='N-mm'"],
-}
+    "pressed": ["load.Q=[0, 0]", "load.sigma=[0, 0]", "friction.f=0"], "N-mm": ["shown_in='N-mm'"],
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module", params=SCENES)

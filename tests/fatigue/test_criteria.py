@@ -77,11 +77,9 @@ def brute_force(name, path):
     if size == 0:  # compression on every plane
         return 0.0, 0.0
     polished = minimize(
-        lambda at: -float(on_plane(name, sigma, at[0], at[1])) / size,
-        start,
-        method="Nelder-Mead",
+        lambda at: -float(on_plane(name, sigma, at[0], at[1])) / size, start, method="Nelder-Mead",
         options={"xatol": 1e-9, "fatol": 1e-16, "initial_simplex": start + np.radians([[0, 0], [0.5, 0], [0, 1]])},
-    )
+    )  # fmt: skip
     return -polished.fun * size, size
 
 
@@ -134,15 +132,10 @@ def test_turned_axes(name):
     stress, turn = paths(3), 0.3
     cos, sin = np.cos(turn), np.sin(turn)
     xx, yy, xy, zz = np.moveaxis(stress, 1, 0)
-    turned = np.stack(
-        [
-            xx * cos**2 + yy * sin**2 - 2 * xy * sin * cos,
-            xx * sin**2 + yy * cos**2 + 2 * xy * sin * cos,
-            (xx - yy) * sin * cos + xy * (cos**2 - sin**2),
-            zz,
-        ],
-        axis=1,
-    )
+    turned = np.stack([
+        xx * cos**2 + yy * sin**2 - 2 * xy * sin * cos, xx * sin**2 + yy * cos**2 + 2 * xy * sin * cos,
+        (xx - yy) * sin * cos + xy * (cos**2 - sin**2), zz,
+    ], axis=1)  # fmt: skip
     one, other = ALL[name](stress), ALL[name](turned)
     assert value(other) == pytest.approx(value(one), rel=1e-10)
     if name in PLANES:

@@ -42,13 +42,11 @@ UNLIKE = (
     "material.upper.E=728e9", "material.upper.nu=0.2", "bodies.upper.width=16e-3", "bodies.upper.height=4e-3",
 )  # fmt: skip
 SCENES = {
-    "small tension": ("hertz-small-tension",),
-    "large tension": ("hertz-large-tension",),
-    "flat and rounded": ("flat-rounded",),
-    "mean loads": ("hertz-large-tension", *MEAN, "load.cycles=2"),
+    "small tension": ("hertz-small-tension",), "large tension": ("hertz-large-tension",),
+    "flat and rounded": ("flat-rounded",), "mean loads": ("hertz-large-tension", *MEAN, "load.cycles=2"),
     "out of phase": ("hertz-large-tension", *CIRCLE, "load.cycles=2"),
     "unlike bodies": ("hertz-large-tension", *UNLIKE, "load.cycles=2", "load.steps=2"),
-}
+}  # fmt: skip
 POINTS = np.sin(np.linspace(-1, 1, 202)[1:-1] * np.pi / 2)
 CELLS = np.linspace(-1, 1, 41)  # of the contact: means over them are of no mesh
 
@@ -451,16 +449,13 @@ def trials() -> Iterator[Trial]:
     that each run makes for itself."""
     pairs: dict[str, tuple[Callable[..., Apart], tuple[str, ...]]] = {
         **{f"units: {name}": (partial(units, *factors), tuple(SCENES)) for name, factors in _UNITS.items()},
-        "mirror": (mirror, tuple(SCENES)),
-        "swap of bodies": (swap, tuple(SCENES)),
-        "7 sub-steps": (partial(substeps, 7), IN_PHASE[:3]),
-        "50 sub-steps": (partial(substeps, 50), IN_PHASE[:3]),
-        "restart": (restart, tuple(SCENES)),
-        "f = 1e-9, loads in proportion": (partial(little_friction, 1e-9), ALIKE),
+        "mirror": (mirror, tuple(SCENES)), "swap of bodies": (swap, tuple(SCENES)),
+        "7 sub-steps": (partial(substeps, 7), IN_PHASE[:3]), "50 sub-steps": (partial(substeps, 50), IN_PHASE[:3]),
+        "restart": (restart, tuple(SCENES)), "f = 1e-9, loads in proportion": (partial(little_friction, 1e-9), ALIKE),
         "f = 1e-9, no friction": (partial(without_friction, 1e-9), tuple(SCENES)),
         "rigid shift": (partial(shifted, 0.0123, 0.1), tuple(SCENES)),
         "order of nodes and elements": (partial(reordered, 1), tuple(SCENES)),
-    }
+    }  # fmt: skip
     for name, (run, kinds) in pairs.items():
         for method, bar in ROUNDING.items():
             # ten times f; nodes of high order that slip and stick again on the way, which a leg in one step leaves out

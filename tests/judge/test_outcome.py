@@ -14,15 +14,10 @@ PASSED, MISSED, NOT_JUDGED = Outcome.PASSED, Outcome.MISSED, Outcome.NOT_JUDGED
 SOUND = Verdict("finite", PASSED)
 
 
-@pytest.mark.parametrize(
-    ("regime", "asked"),
-    [
-        *((regime, ("a", "m", "n", "p", "q")) for regime in STICKS),
-        ("sliding", ("regime", "a", "p", "q")),
-        ("frictionless", ("regime", "a", "p", "q")),
-        ("ratchets", ("regime", "a", "m", "n", "p", "q")),
-    ],
-)
+@pytest.mark.parametrize(("regime", "asked"), [
+    *((regime, ("a", "m", "n", "p", "q")) for regime in STICKS), ("sliding", ("regime", "a", "p", "q")),
+    ("frictionless", ("regime", "a", "p", "q")), ("ratchets", ("regime", "a", "m", "n", "p", "q")),
+])  # fmt: skip
 def test_every_regime_has_its_questions(regime, asked):
     assert headline([Verdict("regime", PASSED, regime, regime)]) == asked
     assert headline([]) == headline([Verdict("regime", PASSED)]) == ("regime", "a", "m", "n", "p", "q")
@@ -82,46 +77,33 @@ def test_quantities_may_be_waived():
 
 
 ALL, SOME, BAD, NONE = (
-    Conclusion(PASSED),
-    Conclusion(NOT_JUDGED, unjudged=("m", "n")),
-    Conclusion(MISSED, missed=("q: error 2 > 1",), unjudged=("n",)),
-    Conclusion(NOT_JUDGED, asked=False),
-)
+    Conclusion(PASSED), Conclusion(NOT_JUDGED, unjudged=("m", "n")),
+    Conclusion(MISSED, missed=("q: error 2 > 1",), unjudged=("n",)), Conclusion(NOT_JUDGED, asked=False),
+)  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("each", "outcome", "unjudged", "asked"),
-    [
-        ([ALL, ALL], PASSED, (), True),
-        ([ALL, NONE], PASSED, (), True),
-        ([ALL, SOME], NOT_JUDGED, ("m", "n"), True),
-        ([SOME, SOME], NOT_JUDGED, ("m", "n"), True),
-        ([ALL, SOME, BAD], MISSED, ("m", "n"), True),
-        ([NONE], NOT_JUDGED, (), False),
-        ([replace(NONE, outcome=MISSED, missed=("x",)), ALL], MISSED, (), True),
-        ([], NOT_JUDGED, (), False),
-    ],
-)
+@pytest.mark.parametrize(("each", "outcome", "unjudged", "asked"), [
+    ([ALL, ALL], PASSED, (), True), ([ALL, NONE], PASSED, (), True), ([ALL, SOME], NOT_JUDGED, ("m", "n"), True),
+    ([SOME, SOME], NOT_JUDGED, ("m", "n"), True), ([ALL, SOME, BAD], MISSED, ("m", "n"), True),
+    ([NONE], NOT_JUDGED, (), False), ([replace(NONE, outcome=MISSED, missed=("x",)), ALL], MISSED, (), True),
+    ([], NOT_JUDGED, (), False),
+])  # fmt: skip
 def test_several_pass_if_all_that_had_bars_pass(each, outcome, unjudged, asked):
     found = together(each)
     assert (found.outcome, found.unjudged, found.asked) == (outcome, unjudged, asked)
     assert found.missed == tuple(text for one in each for text in one.missed)
 
 
-@pytest.mark.parametrize(
-    ("compared", "hold", "outcome"),
-    [
-        ({"fem": ALL}, {"exact": True, "fem": True}, PASSED),
-        ({"fem": ALL, "exact": SOME}, {"march": True, "fem": True, "exact": False}, PASSED),
-        ({"fem": SOME, "exact": SOME}, {"march": True, "fem": True, "exact": False}, NOT_JUDGED),
-        ({"fem": ALL, "march": SOME}, {"exact": True, "fem": True, "march": True}, NOT_JUDGED),
-        ({"fem": ALL, "exact": BAD}, {"march": True, "fem": True, "exact": False}, MISSED),
-        ({"exact": ALL}, {"march": True, "exact": False}, NOT_JUDGED),
-        ({"exact": SOME}, {"march": True, "exact": False}, NOT_JUDGED),
-        ({"fem": NONE}, {"fem": True, "exact": True}, NOT_JUDGED),
-        ({}, {"exact": True}, NOT_JUDGED),
-    ],
-)
+@pytest.mark.parametrize(("compared", "hold", "outcome"), [
+    ({"fem": ALL}, {"exact": True, "fem": True}, PASSED),
+    ({"fem": ALL, "exact": SOME}, {"march": True, "fem": True, "exact": False}, PASSED),
+    ({"fem": SOME, "exact": SOME}, {"march": True, "fem": True, "exact": False}, NOT_JUDGED),
+    ({"fem": ALL, "march": SOME}, {"exact": True, "fem": True, "march": True}, NOT_JUDGED),
+    ({"fem": ALL, "exact": BAD}, {"march": True, "fem": True, "exact": False}, MISSED),
+    ({"exact": ALL}, {"march": True, "exact": False}, NOT_JUDGED),
+    ({"exact": SOME}, {"march": True, "exact": False}, NOT_JUDGED),
+    ({"fem": NONE}, {"fem": True, "exact": True}, NOT_JUDGED), ({}, {"exact": True}, NOT_JUDGED),
+])  # fmt: skip
 def test_a_run_passes_if_every_result_that_claims_to_hold_passes(compared, hold, outcome):
     missed = [f"{name}: {text}" for name, each in compared.items() for text in each.missed]
     found = of_run(compared, missed, hold)

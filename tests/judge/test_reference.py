@@ -38,18 +38,14 @@ def gradual_loads_are_not_solved():
 
 @pytest.mark.parametrize(
     ("scene", "method", "usual"),
-    [
-        (hertz(0.6, 0.0), "exact", ("exact", "fem")),
-        (hertz(0.3, 4.0), "exact", ("exact", "fem")),
-        (hertz(0.6, 0.0, "friction.f=0.1"), "exact", ("exact", "fem")),
-        (hertz(0.0, 0.0), "exact", ("exact", "fem")),
-        (hertz(0.6, 0.0, "load.Q=[0.0, 3e4, 1e4]", "load.sigma=[0.0, 0.0, 1e7]"), "march", ("march", "fem")),
-        (hertz(0.6, 0.0, "load.P=[8e4, 1e5]", "load.Q=[0.0, 4e3]"), "exact", ("exact", "fem")),
-        (hertz(0.6, 0.0, "bodies.lower={width=0.02, height=0.01}"), "fem", ("exact", "fem")),
-        (hertz(0.6, 0.0, STEEL), "fem", ("fem",)),
-    ],
+    [(hertz(0.6, 0.0), "exact", ("exact", "fem")), (hertz(0.3, 4.0), "exact", ("exact", "fem")),
+     (hertz(0.6, 0.0, "friction.f=0.1"), "exact", ("exact", "fem")), (hertz(0.0, 0.0), "exact", ("exact", "fem")),
+     (hertz(0.6, 0.0, "load.Q=[0.0, 3e4, 1e4]", "load.sigma=[0.0, 0.0, 1e7]"), "march", ("march", "fem")),
+     (hertz(0.6, 0.0, "load.P=[8e4, 1e5]", "load.Q=[0.0, 4e3]"), "exact", ("exact", "fem")),
+     (hertz(0.6, 0.0, "bodies.lower={width=0.02, height=0.01}"), "fem", ("exact", "fem")),
+     (hertz(0.6, 0.0, STEEL), "fem", ("fem",))],
     ids=["shear", "tension", "slides", "nothing", "out of phase", "varying", "finite", "unlike"],
-)
+)  # fmt: skip
 def test_one_choice_for_every_scene(scene, method, usual):
     assert reference(scene) == (method, {})
     assert default_methods(scene) == usual
@@ -112,29 +108,20 @@ def test_results_that_tell_their_errors_go_before_those_that_do_not():
     assert among(nothing | none, nothing) == "march"  # q = f p, and it knows p to rounding
 
 
-@pytest.mark.parametrize(
-    ("made", "quantity", "error"),
-    [
-        (result("exact", estimate={}), "m", 0.0),
-        (result("march", estimate={}), "m", None),
-        (result("march", estimate={}), "right_1", 0.0),
-        (result("march", estimate={}, counts={"tangential_unknowns": 0}), "q2", 0.0),
-        (result("march", estimate={}, counts={"tangential_unknowns": 9}), "q2", None),
-        (result("march", estimate={"q": 2e-3}), "q2", 2e-3),
-        (result("march", estimate={"q": float("nan"), "q1": 1e-3}), "q", None),
-        (result("march", regime="stuck", estimate={}), "n", 0.0),
-        (result(estimate={"a": 1e-4}), "left_2", 1e-4),
-        (result(estimate={"a": 1e-4, "left": 2e-4}), "left_2", 2e-4),
-        (result(estimate={"a": 1e-4}), "n", None),
-        (result(estimate={"a": 1e-4}, regime="stuck"), "n", 1e-4),
-        (result(estimate={"p": 1e-4}, centre=None, regime="sliding"), "q", 1e-4),
-        (result(estimate={}), "p_1", None),
-        (result(estimate={}), "dQ", 0.0),
-        (result(estimate={}), "P_1", 0.0),
-        (result("mine", estimate={}), "a", None),
-        (result("march", estimate={}), "surface", None),
-    ],
-)
+@pytest.mark.parametrize(("made", "quantity", "error"), [
+    (result("exact", estimate={}), "m", 0.0), (result("march", estimate={}), "m", None),
+    (result("march", estimate={}), "right_1", 0.0),
+    (result("march", estimate={}, counts={"tangential_unknowns": 0}), "q2", 0.0),
+    (result("march", estimate={}, counts={"tangential_unknowns": 9}), "q2", None),
+    (result("march", estimate={"q": 2e-3}), "q2", 2e-3),
+    (result("march", estimate={"q": float("nan"), "q1": 1e-3}), "q", None),
+    (result("march", regime="stuck", estimate={}), "n", 0.0), (result(estimate={"a": 1e-4}), "left_2", 1e-4),
+    (result(estimate={"a": 1e-4, "left": 2e-4}), "left_2", 2e-4), (result(estimate={"a": 1e-4}), "n", None),
+    (result(estimate={"a": 1e-4}, regime="stuck"), "n", 1e-4),
+    (result(estimate={"p": 1e-4}, centre=None, regime="sliding"), "q", 1e-4), (result(estimate={}), "p_1", None),
+    (result(estimate={}), "dQ", 0.0), (result(estimate={}), "P_1", 0.0), (result("mine", estimate={}), "a", None),
+    (result("march", estimate={}), "surface", None),
+])  # fmt: skip
 def test_what_a_result_tells_of_its_errors(made, quantity, error):
     found = error_of(made, quantity, made.method)
     assert math.isnan(found) if error is None else found == error

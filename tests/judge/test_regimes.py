@@ -23,15 +23,12 @@ def widths(of):
     return -of.m - left, right - of.n
 
 
-@pytest.mark.parametrize(
-    ("names", "left", "right", "which", "words"),
-    [
-        (("small tension", "large tension"), -0.9, 0.5, min, "a slip zone is narrower"),
-        (("small tension", "sticking ends"), -0.9, 0.5, min, "a slip zone is narrower"),
-        (("no slip", "large tension"), -0.9, 0.5, min, "a slip zone is narrower"),
-        (("small tension", "stuck"), -0.9, 0.8, max, "both slip zones are narrower"),
-    ],
-)
+@pytest.mark.parametrize(("names", "left", "right", "which", "words"), [
+    (("small tension", "large tension"), -0.9, 0.5, min, "a slip zone is narrower"),
+    (("small tension", "sticking ends"), -0.9, 0.5, min, "a slip zone is narrower"),
+    (("no slip", "large tension"), -0.9, 0.5, min, "a slip zone is narrower"),
+    (("small tension", "stuck"), -0.9, 0.8, max, "both slip zones are narrower"),
+])  # fmt: skip
 def test_a_zone_that_is_as_narrow_as_the_bar_tells_no_regime(names, left, right, which, words):
     one = zone(left, right, names[0])
     other = replace(one, regime=names[1])

@@ -70,16 +70,14 @@ def test_a_verdict_in_words_and_as_data():
 
 
 SPOILT = {
-    "a": (result(a=1.01), 1.0, 1.01, "a"),
-    "left": (result(contact_ends=((-1.02 * A, A),) * 2), -1.0, -1.02, "a"),
+    "a": (result(a=1.01), 1.0, 1.01, "a"), "left": (result(contact_ends=((-1.02 * A, A),) * 2), -1.0, -1.02, "a"),
     "right": (result(contact_ends=((-A, 0.97 * A),) * 2), 1.0, 0.97, "a"),
     "m": (result(centre=-0.01, half_width=C + 0.01), C, C + 0.02, "a"),
     "n": (result(centre=0.01, half_width=C + 0.01), C, C + 0.02, "a"),
-    "P": (result(of=traction(p=1.05)), 1.0, 1.05, "P"),
-    "p_max": (result(of=traction(p=1.05)), 1.0, 1.05, "p0"),
+    "P": (result(of=traction(p=1.05)), 1.0, 1.05, "P"), "p_max": (result(of=traction(p=1.05)), 1.0, 1.05, "p0"),
     "dQ": (result(of=traction(q=1.05)), 0.36, 0.36 * 1.05, "2 f P"),
     "q_max": (result(of=traction(q=0.9)), 0.6, 0.6 * 0.9, "f p0"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("key", SPOILT)
@@ -93,17 +91,11 @@ def test_the_error_is_the_difference_of_the_values(key):
             assert other.error == pytest.approx(abs(other.found - other.reference), abs=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("key", "found", "error"),
-    [
-        ("p", result(of=traction(p=1.05)), 0.05),
-        ("q", result(of=traction(q=0.9)), 0.1),
-        ("q1", result(of=traction(q=0.9)), 0.1),
-        ("q2", result(of=traction(q=0.9)), 0.1),
-        ("p", result(of=traction(p1=1.2)), 0.0),
-        ("p_1", result(of=traction(p1=1.2)), 0.2),
-    ],
-)
+@pytest.mark.parametrize(("key", "found", "error"), [
+    ("p", result(of=traction(p=1.05)), 0.05), ("q", result(of=traction(q=0.9)), 0.1),
+    ("q1", result(of=traction(q=0.9)), 0.1), ("q2", result(of=traction(q=0.9)), 0.1),
+    ("p", result(of=traction(p1=1.2)), 0.0), ("p_1", result(of=traction(p1=1.2)), 0.2),
+])  # fmt: skip
 def test_norms_have_an_error_and_no_values(key, found, error):
     verdict = verdicts(found)[key]
     assert verdict.error == pytest.approx(error, rel=1e-9, abs=1e-15)
@@ -140,17 +132,11 @@ def test_estimates_stand_beside_errors():
 
 
 @pytest.mark.fault
-@pytest.mark.parametrize(
-    ("found", "keys"),
-    [
-        (result(a=NAN), {"a", "left_1", "right_1", "left_2", "right_2"}),
-        (result(centre=NAN), {"m", "n"}),
-        (result(half_width=NAN), {"m", "n"}),
-        (result(contact_ends=((NAN, A), (-A, A))), {"left_1"}),
-        (result(of=traction(p=NAN)), {"P", "p", "p_max"}),
-        (result(of=traction(q=NAN)), {"dQ", "q", "q_max", "q1", "q2"}),
-    ],
-)
+@pytest.mark.parametrize(("found", "keys"), [
+    (result(a=NAN), {"a", "left_1", "right_1", "left_2", "right_2"}), (result(centre=NAN), {"m", "n"}),
+    (result(half_width=NAN), {"m", "n"}), (result(contact_ends=((NAN, A), (-A, A))), {"left_1"}),
+    (result(of=traction(p=NAN)), {"P", "p", "p_max"}), (result(of=traction(q=NAN)), {"dQ", "q", "q_max", "q1", "q2"}),
+])  # fmt: skip
 @pytest.mark.parametrize("accuracy", [1e-3, None])
 def test_nan_is_missed(found, keys, accuracy):
     """Deliberate fault: a value is NaN. NaN once passed, because NaN > bar is false."""

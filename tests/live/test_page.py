@@ -46,12 +46,10 @@ def all_loads():
     some = np.linspace(0.02, 0.98, 17)
     off = np.concatenate([way * np.logspace(-15, -1, 15) for way in (-1, 1)])
     parts = [
-        (Qf, sf),
-        np.meshgrid(near, [0, 1e-9, 1e-3, 0.5, 3, 7.9, 8.1, 12, 50]),
+        (Qf, sf), np.meshgrid(near, [0, 1e-9, 1e-3, 0.5, 3, 7.9, 8.1, 12, 50]),
         (some[:, None], transition(some, HertzShape())[:, None] * (1 + off)),
-        np.meshgrid([0, 1e-6, 0.1, 0.5, 0.9, 0.99], np.logspace(1.5, 5, 15)),
-        (0.5, [1e5, 1e6, 1e9]),
-    ]
+        np.meshgrid([0, 1e-6, 0.1, 0.5, 0.9, 0.99], np.logspace(1.5, 5, 15)), (0.5, [1e5, 1e6, 1e9]),
+    ]  # fmt: skip
     pairs = (np.broadcast_arrays(*(np.asarray(part, float) for part in pair)) for pair in parts)
     return np.concatenate([np.column_stack([Qf.ravel(), sf.ravel()]) for Qf, sf in pairs]).T
 

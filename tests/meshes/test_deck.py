@@ -70,21 +70,17 @@ CASES = {
     "another system": (lambda text: text.replace("*NODE", "*System\n1, 1, 0\n*NODE"), "*SYSTEM is not read"),
     "polar nodes": (lambda text: text.replace("*NODE", "*NODE, SYSTEM=C"), "SYSTEM is not read"),
     "nodes in a file": (lambda text: text.replace("*NODE", "*NODE, INPUT=nodes.txt"), "INPUT is not read"),
-    "a comma left out": (
-        lambda text: text.replace("*NSET, NSET=left", "*NSET NSET=left"),
-        "commas as in Abaqus; '*NSET N",
-    ),
+    "a comma left out": (lambda text: text.replace("*NSET, NSET=left", "*NSET NSET=left"),
+     "commas as in Abaqus; '*NSET N"),
     "an element twice": (lambda text: text + "*ELEMENT, TYPE=T2D2\n1, 1, 2\n", "must have each element once; 1 are"),
     "solid elements": (lambda text: text.replace("R3D3", "C3D4"), f"{PLANE} C3D4"),
     "axisymmetric elements": (lambda text: text.replace("R3D3", "CAX3"), f"{PLANE} CAX3"),
-    "nodes left out": (
-        lambda text: text.replace("R3D3", "CPE4"),
-        "must have a number and 4 nodes for each element CPE4",
-    ),
+    "nodes left out": (lambda text: text.replace("R3D3", "CPE4"),
+     "must have a number and 4 nodes for each element CPE4"),
     "a node that is none": (lambda text: text + "*NSET, NSET=Contact\n99999\n", "set 'contact' has the node 99999"),
     "a set of itself": (lambda text: text + "*NSET, NSET=Contact\ncontact\n", "NSET 'contact' refers to itself"),
     "a part that is none": (lambda text: f"{text}*INSTANCE, NAME=B, PART=C\n*END INSTANCE\n", "'C' is no *PART"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -30,22 +30,12 @@ def printed(found, **options):
     return console.file.getvalue()
 
 
-@pytest.mark.parametrize(
-    ("value", "error", "text"),
-    [
-        (0.888123, 0.0029, "0.888 +- 0.003"),
-        (0.888123, 0.003, "0.888 +- 0.003"),
-        (0.888123, 0.0031, "0.888 +- 0.004"),
-        (0.888123, 0.0096, "0.89 +- 0.01"),
-        (-0.29701, 2.3e-4, "-0.2970 +- 0.0003"),
-        (123.4, 20.0, "120 +- 20"),
-        (123.4, 300.0, "100 +- 300"),
-        (0.888123, 0.0, "0.888123"),
-        (0.8881234567, 1e-9, "0.8881235"),
-        (0.0, 1e-3, "0.000 +- 0.001"),
-        (1.54321, float("nan"), "1.543"),
-    ],
-)
+@pytest.mark.parametrize(("value", "error", "text"), [
+    (0.888123, 0.0029, "0.888 +- 0.003"), (0.888123, 0.003, "0.888 +- 0.003"), (0.888123, 0.0031, "0.888 +- 0.004"),
+    (0.888123, 0.0096, "0.89 +- 0.01"), (-0.29701, 2.3e-4, "-0.2970 +- 0.0003"), (123.4, 20.0, "120 +- 20"),
+    (123.4, 300.0, "100 +- 300"), (0.888123, 0.0, "0.888123"), (0.8881234567, 1e-9, "0.8881235"),
+    (0.0, 1e-3, "0.000 +- 0.001"), (1.54321, float("nan"), "1.543"),
+])  # fmt: skip
 def test_digits_are_those_that_the_error_leaves(value, error, text):
     assert answer.with_error(value, error) == text
     shifted = answer.with_error(value * 1e-3, error * 1e-3, -3)
@@ -146,14 +136,11 @@ def test_rows_that_say_something_stay():
     assert {"q1", "q2"} & set(left(result(of=traction(add=lambda x: 0.1 * (abs(x) < 0.5)))))
 
 
-@pytest.mark.parametrize(
-    ("changes", "text"),
-    [
-        (["bodies.lower={width=0.02, height=0.01}"], "no bars: finite bodies"),
-        (["material={lower={E=2.1e11, nu=0.3}, upper={E=0.7e11, nu=0.3}}"], "no bars: unlike bodies"),
-        (["fem.size=0.05"], "no bars: the element size was given"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "text"), [
+    (["bodies.lower={width=0.02, height=0.01}"], "no bars: finite bodies"),
+    (["material={lower={E=2.1e11, nu=0.3}, upper={E=0.7e11, nu=0.3}}"], "no bars: unlike bodies"),
+    (["fem.size=0.05"], "no bars: the element size was given"),
+])  # fmt: skip
 def test_why_there_are_no_bars(changes, text):
     scene = load_scene("hertz-shear", [f"load={{P={P}, Q=[{-C * F * P}, {C * F * P}]}}", *changes])
     found = ran({"exact": EXACT, "fem": result()}, scene, None)

@@ -56,17 +56,11 @@ def test_estimates_are_plain_numbers(file):
 
 
 OTHER = {
-    "half-plane": "bodies.upper=None",
-    "width": "bodies.upper.width=16.1e-3",
-    "height": "bodies.lower.height=9e-3",
-    "holder": "bodies.lower.holder={width=16e-3, height=1e-3}",
-    "support": "bodies.lower.support='roller'",
-    "pulled": ("bodies.lower.support='roller'", "bodies.lower.pulled=true"),
-    "pad": "bodies.upper.kind='pad'",
-    "E": "material.E=7e10",
-    "nu": "material.nu=0.31",
-    "plane": "material.plane='stress'",
-}
+    "half-plane": "bodies.upper=None", "width": "bodies.upper.width=16.1e-3", "height": "bodies.lower.height=9e-3",
+    "holder": "bodies.lower.holder={width=16e-3, height=1e-3}", "support": "bodies.lower.support='roller'",
+    "pulled": ("bodies.lower.support='roller'", "bodies.lower.pulled=true"), "pad": "bodies.upper.kind='pad'",
+    "E": "material.E=7e10", "nu": "material.nu=0.31", "plane": "material.plane='stress'",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("what", OTHER)
@@ -198,41 +192,30 @@ def more_terms(data):
 
 SPOILED = {
     "NaN": (lambda path: path.write_text(path.read_text().replace("0.00", "NaN", 1)), "not a rig: "),
-    "null": (
-        spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, None)),
-        "not a rig: .*: must be a number, not null",
-    ),
-    "text": (
-        spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, "1")),
-        "not a rig: .*: must be a number, not a string",
-    ),
-    "infinite": (
-        lambda path: path.write_text(re.sub(r'"reach": [^,]*', '"reach": 1e999', path.read_text())),
-        "not a rig: ",
-    ),
+    "null": (spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, None)),
+     "not a rig: .*: must be a number, not null"),
+    "text": (spoiled(lambda data: data["terms"]["xx"][0].__setitem__(0, "1")),
+     "not a rig: .*: must be a number, not a string"),
+    "infinite": (lambda path: path.write_text(re.sub(r'"reach": [^,]*', '"reach": 1e999', path.read_text())),
+     "not a rig: "),
     "no reach": (spoiled(lambda data: data.pop("reach")), "not a rig: reach: missing"),
     "negative reach": (spoiled(lambda data: data.update(reach=-1.0)), "not a rig: .*reach"),
     "more": (spoiled(lambda data: data.update(more=1)), "not a rig: more: unknown key"),
     "shape": (spoiled(more_terms), r"terms.xx: must have 12 rows of 12 numbers|terms\.\w+: must have"),
-    "short row": (
-        spoiled(lambda data: data["rough"]["pulled"][0].pop()),
-        "rough.pulled: must have 2 rows of 11 numbers",
-    ),
+    "short row": (spoiled(lambda data: data["rough"]["pulled"][0].pop()),
+     "rough.pulled: must have 2 rows of 11 numbers"),
     "asymmetry": (spoiled(lambda data: data["terms"]["yy"][2].__setitem__(0, 1.0)), r"terms.yy: must be symmetric"),
-    "schema": (
-        spoiled(lambda data: data.update(schema="partialslip/rig/1")),
-        "schema = 'partialslip/rig/1': must be 'partialslip/rig/2'",
-    ),
+    "schema": (spoiled(lambda data: data.update(schema="partialslip/rig/1")),
+     "schema = 'partialslip/rig/1': must be 'partialslip/rig/2'"),
     "not JSON": (lambda path: path.write_text("reach = 1"), "not a rig: "),
     "empty": (lambda path: path.write_text(""), "not a rig: "),
     "a list": (lambda path: path.write_text("[]"), "not a rig: "),
     "not UTF-8": (lambda path: path.write_bytes(b'{"schema": "\xff\xfe"}'), "not a rig: "),
     "truncated": (lambda path: path.write_text(path.read_text()[:1000]), "not a rig: "),
     "1 GB": (large, "1073741824 bytes: must be at most 1048576"),
-    "a folder": (folder, "cannot be read: Is a directory"),
-    "a pipe": (pipe, "cannot be read: must be a regular file"),
+    "a folder": (folder, "cannot be read: Is a directory"), "a pipe": (pipe, "cannot be read: must be a regular file"),
     "absent": (lambda path: path.unlink(), "cannot be read: No such file"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("how", SPOILED)

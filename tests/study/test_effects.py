@@ -30,23 +30,18 @@ EQUAL = ("bodies.lower.width=30e-3", "bodies.lower.height=10e-3", "bodies.upper.
 
 # From frictionless Hertz to two different finite bodies with mean loads and stresses inside.
 SIX = {
-    "frictionless": (("friction.f=0", "load.Q=[0, 0]"), False),
-    "shear": ((), False),
-    "large tension": ((LARGE,), False),
-    "mean loads, small tension": ((*MEAN, "load.sigma=[0, 1e8]"), False),
-    "unlike half-planes": ((*STIFF, SMALLER), False),
-    "everything": ((*STIFF, *BLOCKS, *MEAN, LARGE), True),
-}
+    "frictionless": (("friction.f=0", "load.Q=[0, 0]"), False), "shear": ((), False),
+    "large tension": ((LARGE,), False), "mean loads, small tension": ((*MEAN, "load.sigma=[0, 1e8]"), False),
+    "unlike half-planes": ((*STIFF, SMALLER), False), "everything": ((*STIFF, *BLOCKS, *MEAN, LARGE), True),
+}  # fmt: skip
 
 # Counted work of an effect: zero if the effect is left out.
 WORK = {
     "friction": lambda counts: counts["tangential_unknowns"] + counts["load_steps"] + counts["friction_iterations"],
-    "opposing-slip": lambda counts: counts["opposing_nodes"],
-    "history": lambda counts: counts["cycles"],
+    "opposing-slip": lambda counts: counts["opposing_nodes"], "history": lambda counts: counts["cycles"],
     "coupling": lambda counts: counts["bodies"] - 1 + counts["normal_solves"] - 1,
-    "far-field": lambda counts: counts["far_field_columns"],
-    "subsurface": lambda counts: counts["back_solves"],
-}
+    "far-field": lambda counts: counts["far_field_columns"], "subsurface": lambda counts: counts["back_solves"],
+}  # fmt: skip
 
 
 def solved_fem(*overrides, subsurface=False):

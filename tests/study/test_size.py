@@ -212,14 +212,9 @@ def test_every_point_is_fitted_or_says_why_not():
     off = np.where(X == 16, np.nan, 0.3 * X**-2.0)
     points = trend(made_sizes(off, mesh), "m").points
     assert points == (
-        PointStatus.SMALLER,
-        PointStatus.FITTED,
-        PointStatus.NO_VALUE,
-        PointStatus.FITTED,
-        PointStatus.UNCLEAR,
-        PointStatus.FITTED,
-        PointStatus.LIMIT,
-    )
+        PointStatus.SMALLER, PointStatus.FITTED, PointStatus.NO_VALUE, PointStatus.FITTED, PointStatus.UNCLEAR,
+        PointStatus.FITTED, PointStatus.LIMIT,
+    )  # fmt: skip
     assert trend(made_sizes(off, np.where(X > 8, 1.0, 0.0)), "m").points[:2] == (PointStatus.FEW, PointStatus.FEW)
     assert trend(made_sizes(off, np.nan), "m").points[0] is PointStatus.UNKNOWN
 

@@ -13,14 +13,10 @@ from partialslip.study.size.axes import cases as make
 from partialslip.study.size.case import compared_methods
 
 
-@pytest.mark.parametrize(
-    ("text", "values", "in_a"),
-    [
-        ("load.P=1e5,2e5", (1e5, 2e5), False),
-        ("bodies.*.width=4a..64a:5", (4.0, 8.0, 16.0, 32.0, 64.0), True),
-        ("fem.order=2,3", (2.0, 3.0), False),
-    ],
-)
+@pytest.mark.parametrize(("text", "values", "in_a"), [
+    ("load.P=1e5,2e5", (1e5, 2e5), False), ("bodies.*.width=4a..64a:5", (4.0, 8.0, 16.0, 32.0, 64.0), True),
+    ("fem.order=2,3", (2.0, 3.0), False),
+])  # fmt: skip
 def test_axes_are_read(text, values, in_a):
     axis = read(text)
     assert axis.values == pytest.approx(values, rel=1e-11)

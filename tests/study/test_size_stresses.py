@@ -147,16 +147,13 @@ def test_the_answer_is_of_the_quantities_asked_for():
         quantities_of(scene(), ["sigma_xx"], ["swt"], asked=False)
 
 
-@pytest.mark.parametrize(
-    ("changes", "names", "told"),
-    [
-        ({"fatigue.distance": 1e-4}, ["ruiz"], "--criterion ruiz: must be another for a study of sizes"),
-        ({"fatigue.distance": 1e-4}, ["findley"], "fatigue.k_findley: missing"),
-        ({"fatigue.distance": 1e-4}, ["mises"], "criterion 'mises': must be of principal, swt"),
-        ({}, ["swt"], "--criterion swt: must be given only with a constant in the table fatigue, for example --set"),
-        ({"fatigue": {}}, ["swt"], "must be given only with a constant in the table fatigue"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "names", "told"), [
+    ({"fatigue.distance": 1e-4}, ["ruiz"], "--criterion ruiz: must be another for a study of sizes"),
+    ({"fatigue.distance": 1e-4}, ["findley"], "fatigue.k_findley: missing"),
+    ({"fatigue.distance": 1e-4}, ["mises"], "criterion 'mises': must be of principal, swt"),
+    ({}, ["swt"], "--criterion swt: must be given only with a constant in the table fatigue, for example --set"),
+    ({"fatigue": {}}, ["swt"], "must be given only with a constant in the table fatigue"),
+])  # fmt: skip
 def test_criteria_that_a_study_cannot_show_are_refused(changes, names, told):
     with pytest.raises(InputError, match=told):
         criteria_of(scene().replace(changes), names)
