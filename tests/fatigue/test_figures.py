@@ -55,13 +55,3 @@ def test_labels_of_contours_keep_off_the_contact_and_keep_their_sign(scene, resu
         assert re.fullmatch(rf"{MINUS}?[\d.]+", text.get_text())
         assert text.get_bbox_patch() is not None
     assert any(text.get_text().startswith(MINUS) for _, text in labels)
-
-
-@pytest.mark.parametrize("names", [["swt"], pytest.param(["swt", "principal", "findley"], marks=pytest.mark.slow)])
-def test_polar_plots_fill_their_figure(scene, result, sheet_of, names):
-    scene = scene.replace({"fatigue.k_findley": 0.3}) if "findley" in names else scene
-    sheet = sheet_of(figures.planes_svg, assess(scene, result, names))
-    assert len(sheet.axes) == len(names)
-    assert min(axes.get_position().x0 for axes in sheet.axes) < 0.2
-    assert max(axes.get_position().x1 for axes in sheet.axes) > 0.8
-    assert not any("-0.0" in axes.get_title() for axes in sheet.axes)

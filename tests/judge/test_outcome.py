@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from rule import STICKS, asks_every_question, verdicts
+from rule import asks_every_question, verdicts
 
 from partialslip.run.judge import NO_BAR, Conclusion, Outcome, Verdict, conclude, of_run, together
 from partialslip.run.judge import verdicts as module
@@ -12,15 +12,6 @@ from partialslip.tools.bars import BARS
 
 PASSED, MISSED, NOT_JUDGED = Outcome.PASSED, Outcome.MISSED, Outcome.NOT_JUDGED
 SOUND = Verdict("finite", PASSED)
-
-
-@pytest.mark.parametrize(("regime", "asked"), [
-    *((regime, ("a", "m", "n", "p", "q")) for regime in STICKS), ("sliding", ("regime", "a", "p", "q")),
-    ("frictionless", ("regime", "a", "p", "q")), ("ratchets", ("regime", "a", "m", "n", "p", "q")),
-])  # fmt: skip
-def test_every_regime_has_its_questions(regime, asked):
-    assert headline([Verdict("regime", PASSED, regime, regime)]) == asked
-    assert headline([]) == headline([Verdict("regime", PASSED)]) == ("regime", "a", "m", "n", "p", "q")
 
 
 def test_every_regime_asks_every_question():

@@ -6,7 +6,7 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 import pytest
-from known import EXACT, P0, SCENE, A, C, F, P, result, root, traction
+from known import EXACT, P0, SCENE, A, C, F, result, root, traction
 from msgspec.structs import replace as changed
 
 from partialslip import compare
@@ -429,11 +429,6 @@ def test_a_run_as_a_whole():
     assert ran({"exact": EXACT}).outcome is NOT_JUDGED
     two = ran({"exact": EXACT, "march": result("march"), "fem": result(a=1.01)})
     assert (two.outcome, len(two.missed)) == (MISSED, 3)
-
-
-def test_units_of_the_scene():
-    assert pytest.approx(P) == SCENE.P
-    assert pytest.approx(2 * P / (np.pi * A)) == P0
 
 
 def test_stresses_have_rows_where_both_know_them():

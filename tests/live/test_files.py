@@ -35,10 +35,6 @@ def test_one_file(tmp_path, monkeypatch, capsys):
     assert "<h1>hertz-shear</h1>" in Path("here", "page.html").read_text("utf-8")
 
 
-def test_it_says_what_the_sliders_do_not_reach(text):
-    assert "The sliders do not reach a P or a moment that varies, loads out of phase" in text
-
-
 def test_it_stands_alone(text):
     outline = Outline(text)
     assert outline.links == []

@@ -20,7 +20,6 @@ from partialslip.study.batch.job import Job, solve_job
 from partialslip.tools.errors import MissingLibraryError, PartialslipError
 from partialslip_meshes import block
 from partialslip_meshes import gmsh as mesher
-from partialslip_meshes import mesher as process
 
 SIZES = {-1.0: 0.05, 0.2: 0.05}
 OUTLINE = (8.0, (-1.2, 1.2), SIZES, 0.5)
@@ -158,42 +157,9 @@ def test_in_daemonic_workers_that_are_spawned():
     assert found.run.methods["fem"].a == solve_job(case).run.methods["fem"].a
 
 
-@posix
-@pytest.mark.filterwarnings("ignore:This process .* is multi-threaded:DeprecationWarning")
-def test_a_fork_does_not_keep_it_alive(tmp_path):
-    """The child has no end of the parent's pipes."""
-    code = f"""
-    import os, sys, time
-    {CALL}
-    print(gmsh._mesher._process.pid, flush=True)
-    if os.fork() == 0:
-        os.close(1), os.close(2)
-        time.sleep(30)
-        os._exit(0)
-    os._exit(0)
-    """
-    assert ended(int(script(tmp_path, code).stdout))
-
-
 def test_a_script_without_a_main_guard(tmp_path, expected):
     done = script(tmp_path, f"print(len({CALL}.points))")
     assert (done.stdout, done.stderr, done.returncode) == (f"{len(expected.points)}\n", "", 0)
-
-
-def test_modules_beside_a_script_are_not_taken_for_the_standard_library(tmp_path, expected):
-    (tmp_path / "select.py").write_text("raise SystemExit('not this one')")
-    (tmp_path / "platform.py").write_text("raise SystemExit('nor this one')")
-    done = script(tmp_path, f"sys.path.insert(0, {str(tmp_path)!r}); print(len({CALL}.points))", prefix="import sys\n"
-                  "here = sys.path.pop(0)\n")  # fmt: skip
-    assert (done.stdout, done.stderr) == (f"{len(expected.points)}\n", "")
-
-
-@posix
-def test_in_a_folder_that_is_gone(tmp_path, expected):
-    gone = tmp_path / "gone"
-    gone.mkdir()
-    done = script(tmp_path, f"import os, shutil; shutil.rmtree(os.getcwd()); print(len({CALL}.points))", cwd=gone)
-    assert (done.stdout, done.stderr) == (f"{len(expected.points)}\n", "")
 
 
 @posix
@@ -330,19 +296,3 @@ def test_no_gmsh_at_all(monkeypatch):
     monkeypatch.setattr(sys, "path_importer_cache", {})
     with pytest.raises(MissingLibraryError, match="gmsh is missing"):
         block(*OUTLINE)
-
-
-def test_messages_of_any_size(tmp_path):
-    del tmp_path
-    read, write = os.pipe()
-    arrays = [b"", b"x" * 5_000_000, b"yz"]
-    with ThreadPoolExecutor(1) as pool:
-        sent = pool.submit(process.send, write, {"n": 0.1}, arrays)
-        head, found = process.receive(read)
-        sent.result()
-    assert head["n"] == 0.1
-    assert found == arrays
-    os.close(write)
-    with pytest.raises(EOFError):
-        process.receive(read)
-    os.close(read)

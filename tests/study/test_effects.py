@@ -207,13 +207,6 @@ def test_no_friction_without_a_load_along_x():
     assert_same(none, solved)
 
 
-def test_pressure_does_not_need_the_shear_columns():
-    alone, with_shear = fem("friction.f=0"), fem()
-    assert alone.regime == "sliding"
-    assert alone.a == pytest.approx(with_shear.a, rel=1e-10)
-    assert alone.traction.p == pytest.approx(with_shear.traction.p, abs=1e-9 * with_shear.p0)
-
-
 def test_what_slides_is_not_iterated():
     for result in (fem("friction.f=0.01"), march("friction.f=0.01")):
         assert result.regime == "sliding"

@@ -172,7 +172,3 @@ def test_unlike_bodies_have_stresses_of_finite_elements_alone():
     study = tables.size_study(asking, axis, [found])
     assert 0 < study.models[0].off["a"][0] < 0.1
     assert stresses.in_short(study)[0].startswith("stresses of the half-plane are not known: no method finds them")
-
-
-def test_an_empty_table_fatigue_is_told_what_it_lacks():
-    assert stresses.NOT_ASKED.startswith("no stresses: the table fatigue has no constant")
