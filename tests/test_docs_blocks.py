@@ -65,11 +65,8 @@ def blocks(text):
     return found
 
 
-PAGES = {
-    str(path.relative_to(DOCS)): blocks(path.read_text("utf-8"))
-    for path in sorted(DOCS.rglob("*.md"))
-    if "_build" not in path.parts
-}
+PAGES = {str(path.relative_to(DOCS)): blocks(path.read_text("utf-8")) for path in sorted(DOCS.rglob("*.md"))
+         if "_build" not in path.parts}  # fmt: skip
 PAGES = {name: found for name, found in PAGES.items() if found}
 
 

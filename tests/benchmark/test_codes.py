@@ -53,15 +53,6 @@ def test_a_python_without_the_code_is_not_taken(name, tmp_path, monkeypatch):
             code_answers(name, {})
 
 
-def test_the_path_is_searched_for_a_python(tmp_path, monkeypatch):
-    monkeypatch.delenv(GETFEM.variable, raising=False)
-    stand_in(tmp_path, monkeypatch, "getfem", "")
-    monkeypatch.delenv(GETFEM.variable)
-    (tmp_path / "python").rename(tmp_path / "python3")
-    monkeypatch.setenv("PATH", str(tmp_path))
-    assert GetFEM(0.1).version == "9.9"
-
-
 @pytest.mark.parametrize(("does", "said"), [
     ("sys.exit('no memory')", "failed: no memory"), ("print('nothing')", "failed: nothing"),
     ("print(json.dumps({'unknowns': 7, 'gave_up': 'press'}))", "did not converge in step 'press'"),

@@ -179,34 +179,27 @@ def test_half_widths_of_mirror_images_are_known_to_the_mesh(blocks):
         assert found["a"] <= own["a"] + fem["a"]
 
 
+LARGE, SMALL_BLOCKS = "hertz-large-tension", both(12e-3, 6e-3)
+MEAN = ["load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", "load.cycles=3", "fem.accuracy=1e-3"]
+CIRCLE = ["load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]", "load.cycles=3", "fem.accuracy=1e-3"]
+AS_BY_FEM = {  # scene, settings, quantities, and the most of their errors
+    "pad on a pulled specimen": (SCENE, [PAD, PULLED, "load.cycles=3", "fem.accuracy=1e-3"],
+                                 ("a", "left_2", "right_2", "m", "n", "p", "q"), np.inf),
+    "large tension": (LARGE, [*SMALL_BLOCKS, "fem.accuracy=1e-4"], "mnq", 1e-3),
+    "mean loads": (LARGE, [*SMALL_BLOCKS, *MEAN], "amnq", np.inf),
+    "out of phase": (LARGE, [*SMALL_BLOCKS, *CIRCLE], "amnq", np.inf),
+}  # fmt: skip
+
+
 @pytest.mark.slow
-def test_a_pad_on_a_pulled_specimen_is_found_as_by_fem():
-    scene = load_scene(SCENE, [PAD, PULLED, "load.cycles=3", "fem.accuracy=1e-3"])
-    found, own, fem = errors(scene)
-    for key in ("a", "left_2", "right_2", "m", "n", "p", "q"):
+@pytest.mark.parametrize("case", AS_BY_FEM)
+def test_bodies_are_found_as_by_fem(case):
+    name, settings, keys, most = AS_BY_FEM[case]
+    found, own, fem = errors(load_scene(name, settings))
+    for key in keys:
         short = key.removesuffix("_2")
         assert found[key] <= own[short] + fem[short], key
-
-
-@pytest.mark.slow
-def test_large_tension():
-    found, own, fem = errors(load_scene("hertz-large-tension", [*both(12e-3, 6e-3), "fem.accuracy=1e-4"]))
-    for key in ("m", "n", "q"):
-        assert found[key] <= own[key] + fem[key], key
-        assert found[key] < 1e-3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("loads", [
-    ("load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]"),
-    ("load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]"),
-], ids=["mean loads", "out of phase"])  # fmt: skip
-def test_other_loads(loads):
-    scene = load_scene("hertz-large-tension", [*both(12e-3, 6e-3), *loads, "load.cycles=3", "fem.accuracy=1e-3"])
-    found, own, fem = errors(scene)
-    assert found["a"] <= own["a"] + fem["a"]
-    for key in ("m", "n", "q"):
-        assert found[key] <= own[key] + fem[key], key
+        assert found[key] < most, key
 
 
 # invariances

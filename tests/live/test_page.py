@@ -142,10 +142,8 @@ def test_it_starts_with_the_loads_of_the_scene(browser, folder, overrides, regim
 def drawn_ends(page):
     """Return q as drawn, in pixels above the axis, next to the ends of the contact."""
     path = "document.querySelector('#tractions .{}').getAttribute('d')"
-    points, zero = (
-        [[float(at) for at in point.split()] for point in page.run(path.format(of)).strip("M").split("L")]
-        for of in ("shear", "zero")
-    )
+    points, zero = ([[float(at) for at in point.split()] for point in page.run(path.format(of)).strip("M").split("L")]
+                    for of in ("shear", "zero"))  # fmt: skip
     points.sort()
     return [zero[0][1] - points[next_to][1] for next_to in (1, -2)]
 

@@ -235,19 +235,11 @@ def split(triangles, node, twin):
     return changed
 
 
-COUNT = 15
-
-
-@pytest.mark.parametrize("case", range(COUNT))
-def test_spoilt_meshes_are_refused_in_one_line(mesh, write, case):
-    why, what = list(spoilt(mesh))[case]
-    told = line_of(read, FIELD, write(**what))
-    assert re.search(why, told)
-    assert told.startswith(f"{FIELD} = '")
-
-
-def test_all_spoilt_meshes_are_tried(mesh):
-    assert len(list(spoilt(mesh))) == COUNT
+def test_spoilt_meshes_are_refused_in_one_line(mesh, write):
+    for why, what in spoilt(mesh):
+        told = line_of(read, FIELD, write(**what))
+        assert re.search(why, told)
+        assert told.startswith(f"{FIELD} = '")
 
 
 @pytest.mark.parametrize(("path", "why"), [

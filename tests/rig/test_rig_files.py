@@ -30,6 +30,12 @@ def file(tmp_path_factory):
     return path
 
 
+@pytest.fixture
+def path(file, tmp_path):
+    """A copy of the file, to be spoiled."""
+    return shutil.copy(file, tmp_path / "rig.json")
+
+
 def referring(path, *settings):
     return scene_of(f"bodies.equivalent='{path}'", *settings)
 
@@ -100,10 +106,9 @@ def test_the_content_of_a_mesh_counts_not_its_name(tmp_path):
 NOTE = "the file of bodies.equivalent was edited since partialslip wrote it; the results are those of its numbers"
 
 
-def test_an_edited_rig_is_said_and_used(file, tmp_path):
+def test_an_edited_rig_is_said_and_used(path, tmp_path):
     """It changed the answer in silence."""
-    path, again = tmp_path / "rig.json", tmp_path / "again.json"
-    shutil.copy(file, path)
+    again = tmp_path / "again.json"
     before = run(referring(path), ["equivalent"])["equivalent"]
     spoiled(lambda data: data.update(sum=data["sum"]))(path)  # written anew by another program
     assert not load_rig(path).edited
@@ -123,9 +128,8 @@ def test_an_edited_rig_is_said_and_used(file, tmp_path):
 
 @pytest.mark.fault
 @pytest.mark.parametrize("kind", ["terms", "rough"])
-def test_a_changed_digit_of_a_rig_is_seen(file, tmp_path, kind):
+def test_a_changed_digit_of_a_rig_is_seen(file, path, kind):
     """Every number, by one part in 1e12."""
-    path = tmp_path / "rig.json"
     for name, rows in json.loads(file.read_text())[kind].items():
         for i, j in np.ndindex(np.shape(rows)):
             if rows[i][j]:
@@ -140,10 +144,8 @@ def test_a_changed_digit_of_a_rig_is_seen(file, tmp_path, kind):
                 assert load_rig(path).edited
 
 
-def test_rigs_without_a_checksum_are_read(file, tmp_path):
+def test_rigs_without_a_checksum_are_read(path):
     """Those of earlier versions."""
-    path = tmp_path / "rig.json"
-    shutil.copy(file, path)
     spoiled(lambda data: data.pop("sum"))(path)
     assert not load_rig(path).edited
 
@@ -154,7 +156,6 @@ def test_rigs_are_found_beside_the_scene(file, tmp_path, monkeypatch):
     from partialslip.scene.reading import scene_toml
 
     text = scene_toml(scene_of()) + '\n[bodies]\nequivalent = "rig.json"\n'
-    text = text.replace("\n[bodies]\n", "\n[bodies]\n", 1)
     (tmp_path / "scenes" / "mine.toml").write_text(text)
     monkeypatch.chdir(tmp_path)
     scene = load_scene("scenes/mine.toml")
@@ -219,10 +220,8 @@ SPOILED = {
 
 
 @pytest.mark.parametrize("how", SPOILED)
-def test_spoiled_files_are_one_line(file, tmp_path, how):
+def test_spoiled_files_are_one_line(path, how):
     spoil, said = SPOILED[how]
-    path = tmp_path / "rig.json"
-    shutil.copy(file, path)
     spoil(path)
     told = line_of(run, referring(path), ["equivalent"])
     assert re.search(said, told)
@@ -231,10 +230,8 @@ def test_spoiled_files_are_one_line(file, tmp_path, how):
 
 
 @pytest.mark.parametrize(("i", "j", "value"), [(2, 0, 1e300), (2, 0, -1e3), (1, 0, 1e300), (1, 1, -1e9)])
-def test_terms_that_mean_nothing_are_one_line(file, tmp_path, i, j, value):
+def test_terms_that_mean_nothing_are_one_line(path, i, j, value):
     """A file may be well-formed and of no body: the line names the bodies, not data that nobody gave."""
-    path = tmp_path / "rig.json"
-    shutil.copy(file, path)
 
     def change(data):
         for kind in ("terms", "rough"):

@@ -10,12 +10,12 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 
 import made
 import msgspec
 import numpy as np
 import pytest
+from ending import ended
 from outline import texts as texts_of
 from size_entries import X, entries, made_sizes, scene, sized
 
@@ -125,20 +125,7 @@ def test_workers_end_with_the_process_that_they_work_for(kind):
     process.send_signal(kind)
     _, said = process.communicate(timeout=30)
     assert "InvalidStateError" not in said
-    for _ in range(600):
-        if not any(map(runs, numbers)):
-            break
-        time.sleep(0.05)
-    else:
-        pytest.fail("a worker is left behind")
-
-
-def runs(number):
-    """Return whether the process of that number runs; zombies do not count."""
-    try:
-        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
+    assert all(map(ended, numbers)), "a worker is left behind"
 
 
 def test_the_law_of_made_up_sizes_is_found():
