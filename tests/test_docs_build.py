@@ -59,16 +59,6 @@ def test_pages_need_no_network(built):
 
 
 @pytest.mark.slow
-def test_formulas_are_markup(built):
-    theory = page(built, "theory")
-    assert theory.count("<math ") > 150
-    assert 'class="math notranslate' not in theory
-    assert not re.search(
-        r"\\(frac|sqrt|Delta|sigma|left|quad)\b", re.sub(r"<pre>.*?</pre>", "", theory, flags=re.DOTALL)
-    )
-
-
-@pytest.mark.slow
 def test_every_command_is_in_the_reference(built, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
     text = page(built, "reference/commands")

@@ -127,16 +127,6 @@ def test_scripts_are_told_the_problem(name, tmp_path, monkeypatch):
         assert sum(told["pull"]) == pytest.approx(scene.bodies.lower.height)
 
 
-@pytest.mark.parametrize(("number", "count"), [("PS-18", 16), ("PS-02", 0)])
-def test_scripts_are_told_all_load_points_only_out_of_phase(number, count, tmp_path, monkeypatch):
-    """The largest shear of a point of PS-18 may be at any of 16 load points."""
-    keep = f"open({str(tmp_path / 'told.json')!r}, 'w').write(json.dumps(told)); sys.exit('enough')"
-    stand_in(tmp_path, monkeypatch, "opensees", keep)
-    code_answers("opensees", {number: PROBLEMS[number]})
-    told = json.loads((tmp_path / "told.json").read_text("utf-8"))
-    assert told["cycle"] == [*range(len(told["steps"]) - count, len(told["steps"]))]
-
-
 @pytest.mark.parametrize(("name", "number"), [("kratos", "PS-21"), ("opensees", "PS-21"), ("opensees", "PS-26")])
 def test_bodies_that_turn_and_meshes_that_do_not_match_are_not_offered(name, number, tmp_path, monkeypatch):
     stand_in(tmp_path, monkeypatch, name, "sys.exit('must not be run')")

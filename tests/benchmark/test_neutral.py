@@ -58,10 +58,6 @@ def test_loads_are_those_of_the_path(written):
     assert told["f"] == problem.scene.friction.f
 
 
-def test_files_are_always_the_same():
-    assert files(PROBLEMS["PS-23"]) == files(PROBLEMS["PS-23"])
-
-
 @pytest.mark.slow
 def test_every_problem_has_files():
     for problem in PROBLEMS.values():

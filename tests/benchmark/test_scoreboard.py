@@ -1,5 +1,6 @@
 """The page of the scoreboard is made from the answers that are kept."""
 
+import json
 import runpy
 from pathlib import Path
 
@@ -13,6 +14,13 @@ SCRIPT = runpy.run_path(str(DOCS / "scoreboard.py"))
 
 def test_the_page_is_todays():
     assert (DOCS / "scoreboard.md").read_text("utf-8") == SCRIPT["page"]()
+
+
+def test_the_table_of_stiffness_on_the_page_of_symptoms_is_todays():
+    peers = DOCS.parent / "benchmarks" / "peers"
+    lines = [json.loads(line) for line in (peers / "stiffness.jsonl").read_text("utf-8").splitlines()]
+    assert len(lines) > 24
+    assert runpy.run_path(str(peers / "stiffness.py"))["table"](lines) in (DOCS / "symptoms.md").read_text("utf-8")
 
 
 def test_exact_answers_are_the_targets():

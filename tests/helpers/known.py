@@ -4,6 +4,8 @@ import numpy as np
 
 from partialslip import load_scene
 from partialslip.result import Cost, Result, Traction, TractionAt
+from partialslip.run import compared
+from partialslip.scene.plan import plan
 
 F, P, SHARE = 0.5, 1e5, 0.36  # Q = +-0.36 f P
 SCENE = load_scene(
@@ -47,3 +49,8 @@ def result(method="fem", centre=0.0, half_width=C, a=1.0, regime="small tension"
 
 
 EXACT = result("exact", estimate={})
+
+
+def ran(results, scene=SCENE, accuracy=1e-3):
+    """A run that has found ``results``, by name."""
+    return compared(scene, plan(scene), results, accuracy)

@@ -404,14 +404,9 @@ ALIKE = (*IN_PHASE, "out of phase")
 ROUNDING = {"exact": 1e-12, "march": 1e-11, "fem": 1e-9}  # compliances of fem are known to 1e-12 or so
 ACCURACY = 1e-3
 _QUICK = {  # of the scenes of a pair of fem's, the one that is no slow test; as a rule the one of mean loads
-    "mirror": "unlike bodies",
-    "swap of bodies": "unlike bodies",
-    "order of nodes and elements": "unlike bodies",
-    "units: 1e12": "large tension",
-    "units: 1e-12": "large tension",
-    "units: 1e12 m, 1e-12 Pa": "large tension",
-    "f = 1e-9, no friction": "large tension",
-    "f = 1e-9, loads in proportion": "large tension",
+    **dict.fromkeys(("mirror", "swap of bodies", "order of nodes and elements"), "unlike bodies"),
+    **dict.fromkeys(("units: 1e12", "units: 1e-12", "units: 1e12 m, 1e-12 Pa"), "large tension"),
+    **dict.fromkeys(("f = 1e-9, no friction", "f = 1e-9, loads in proportion"), "large tension"),
 }
 _ALL_QUICK = {"restart", "rigid shift"}  # what they find differs
 _UNITS = {"mm, MPa": (1e3, 1e-6), "1e12": (1e12, 1e12), "1e-12": (1e-12, 1e-12), "1e12 m, 1e-12 Pa": (1e12, 1e-12)}

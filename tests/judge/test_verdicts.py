@@ -6,15 +6,13 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 import pytest
-from known import EXACT, P0, SCENE, A, C, F, result, root, traction
+from known import EXACT, P0, SCENE, A, C, F, ran, result, root, traction
 from msgspec.structs import replace as changed
 
 from partialslip import compare
 from partialslip.result import SurfaceStress, TractionAt
-from partialslip.run import compared
 from partialslip.run.judge import NO_BAR, Bar, Outcome, Verdict, conditions, judged
 from partialslip.scene import Friction
-from partialslip.scene.plan import plan
 from partialslip.tools.bars import BARS
 
 NAN = float("nan")
@@ -31,10 +29,6 @@ def outcomes(found, *arguments, **named):
 
 def those(found, outcome, *arguments, **named):
     return {key for key, each in outcomes(found, *arguments, **named).items() if each is outcome}
-
-
-def ran(results, accuracy=1e-3, scene=SCENE):
-    return compared(scene, plan(scene), results, accuracy)
 
 
 # one error, one bar
@@ -141,7 +135,7 @@ def test_estimates_stand_beside_errors():
 def test_nan_is_missed(found, keys, accuracy):
     """Deliberate fault: a value is NaN. NaN once passed, because NaN > bar is false."""
     assert those(found, MISSED, accuracy=accuracy) == keys
-    run = ran({"exact": EXACT, "fem": found}, accuracy)
+    run = ran({"exact": EXACT, "fem": found}, accuracy=accuracy)
     assert run.outcome is MISSED
     assert run.missed
     assert "not a number" in " ".join(run.missed)
@@ -268,12 +262,6 @@ def test_a_reference_without_a_value_judges_none():
 def test_levels_are_judged_where_both_know_them():
     assert not {"q1", "q2"} & verdicts(result(of=traction(levels=False))).keys()
     assert not {"q1", "q2"} & verdicts(result(), replace(EXACT, traction=traction(levels=False))).keys()
-
-
-def test_the_references_cells_serve_where_the_method_has_none():
-    one = verdicts(result(of=traction(p=1.05, add=lambda x: x**2, cells=None)))
-    other = verdicts(result(of=traction(p=1.05, add=lambda x: x**2)), replace(EXACT, traction=traction(cells=None)))
-    assert one["q"].error == pytest.approx(other["q"].error, rel=1e-12)
 
 
 # bars
@@ -425,7 +413,7 @@ def test_a_run_as_a_whole():
     assert ran({"exact": EXACT, "fem": result(a=1.01)}).missed == tuple(
         f"fem: {key}: error 0.01 > 0.001" for key in ("a", "left", "right")
     )
-    assert ran({"exact": EXACT, "fem": result()}, None).outcome is NOT_JUDGED
+    assert ran({"exact": EXACT, "fem": result()}, accuracy=None).outcome is NOT_JUDGED
     assert ran({"exact": EXACT}).outcome is NOT_JUDGED
     two = ran({"exact": EXACT, "march": result("march"), "fem": result(a=1.01)})
     assert (two.outcome, len(two.missed)) == (MISSED, 3)

@@ -285,20 +285,6 @@ def test_the_point_is_dragged(page):
     assert handle(page) == pytest.approx(start, abs=0.1)
 
 
-def test_the_point_is_dragged_with_a_finger(browser, folder):
-    page = opened(browser, folder, width=390, mobile=True)
-    page.send("Emulation.setTouchEmulationEnabled", enabled=True)
-    page.run("document.querySelector('#map').scrollIntoView({ block: 'center' })")
-    start, before, scrolled = handle(page), answer(page), page.run("scrollY")
-    finger = [{"x": start[0] + share * 80, "y": start[1] - share * 40} for share in np.linspace(0, 1, 6)]
-    for way, points in (("touchStart", finger[:1]), *(("touchMove", [at]) for at in finger[1:]), ("touchEnd", [])):
-        page.send("Input.dispatchTouchEvent", type=way, touchPoints=points)
-    page.send("Emulation.setTouchEmulationEnabled", enabled=False)
-    assert handle(page) == pytest.approx([start[0] + 80, start[1] - 40], abs=1)
-    assert page.run("scrollY") == scrolled
-    assert answer(page).Qf > before.Qf + 0.1
-
-
 def test_the_point_is_moved_by_keys(page):
     before = answer(page)
     page.run("document.querySelector('.handle').focus()")

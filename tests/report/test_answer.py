@@ -6,20 +6,13 @@ from io import StringIO
 
 import numpy as np
 import pytest
-from known import EXACT, P0, SCENE, A, C, F, P, result, traction
+from known import EXACT, P0, A, C, F, P, ran, result, traction
 from rich.console import Console
 
 from partialslip import load_scene, run
 from partialslip.report import answer, print_run, rows
 from partialslip.result.peak import pressure_peaks
-from partialslip.run import compared
 from partialslip.run.judge import Outcome
-from partialslip.scene import Scene
-from partialslip.scene.plan import plan
-
-
-def ran(results, scene: Scene = SCENE, accuracy=1e-3):
-    return compared(scene, plan(scene), results, accuracy)
 
 
 def printed(found, **options):
@@ -169,17 +162,6 @@ def test_a_value_without_an_estimate_has_few_digits_and_is_marked():
     cells = {row[0]: row[2] for row in answer.amounts({"march": march})[1]}
     assert cells["m, stick from -m"] == f"{C * A * 1e3:.4g}, no error estimate"
     assert cells["a, half-width"] == f"{A * 1e3:.7g}"
-
-
-def test_the_result_that_tells_its_errors_answers():
-    estimate = dict.fromkeys(("a", "p", "m", "n", "q"), 1e-4)
-    phases = load_scene("hertz-shear", ["load.Q=[0.0, 3e4, 1e4]", "load.sigma=[0.0, 0.0, 1e7]"])
-    known, rough = result(estimate=estimate), result("march", estimate={})
-    assert ran({"march": rough, "fem": known}, phases).answering == "fem"
-    assert ran({"march": replace(rough, estimate=estimate), "fem": known}, phases).answering == "march"
-    assert ran({"march": rough, "fem": replace(known, estimate={})}, phases).answering == "march"
-    block = load_scene("hertz-shear", ["bodies.lower={width=0.02, height=0.01}"])
-    assert ran({"exact": EXACT, "fem": rough}, block, None).answering == "fem"  # half-planes answer for no body
 
 
 def test_a_contact_that_ratchets_has_no_stick_zone_to_print():

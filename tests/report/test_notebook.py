@@ -129,14 +129,3 @@ def test_data_frames(run):
     assert whole["method"].tolist() == [row["method"] for row in table]
     for key in exact:
         assert whole[key].tolist() == [float(row[key]) for row in table]
-
-
-@pytest.mark.slow
-def test_what_is_not_determined_is_not_a_number():
-    scene = partialslip.load_scene(
-        "hertz-large-tension", ["load.sigma=[1e8, 9e8]", "load.Q=[3e4, 2.2e5]", "fem.accuracy=1e-3"]
-    )
-    mean = partialslip.run(scene, ["exact", "march"])
-    frame = mean.to_dataframe()
-    assert frame["q1"].isna().tolist() == (frame["method"] == "exact").tolist()
-    assert frame["dq"].notna().all()

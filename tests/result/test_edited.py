@@ -165,15 +165,6 @@ def test_outcomes_that_are_believed_are_seen(file, monkeypatch):
     assert load(file).outcome == "passed"  # which the test above would not accept
 
 
-def test_what_was_written_is_what_is_read(file, found):
-    """Outcomes that are concluded anew are those of the run."""
-    with warnings.catch_warnings(action="error"):
-        kept = load_result(file)
-    assert kept.edited is False
-    assert kept == record(found, made=kept.made)
-    assert kept.json == file.read_text("utf-8")
-
-
 SCENES = {
     "no friction": ("hertz-shear", "friction.f=0", "load.Q=[0,0]"), "sliding": ("hertz-shear", "load.Q=[-3e5,3e5]"),
     "no stick zone judged": ("hertz-shear", "load={a=2e-3,Q=[-202151.086544,202151.086544],sigma=[-8.67e8,8.67e8]}"),

@@ -54,13 +54,6 @@ def test_results_are_the_same_bit_for_bit(file):
     assert np.array_equal(one.traction.dq, other.traction.dq)
 
 
-def test_estimates_are_plain_numbers(file):
-    """As in the other methods: they are printed, and encoded as JSON."""
-    found = run(referring(file), ["equivalent"])["equivalent"]
-    kinds = {type(error) for share in (found.estimate, *found.shares.values()) for error in share.values()}
-    assert kinds == {float}
-
-
 OTHER = {
     "half-plane": "bodies.upper=None", "width": "bodies.upper.width=16.1e-3", "height": "bodies.lower.height=9e-3",
     "holder": "bodies.lower.holder={width=16e-3, height=1e-3}", "support": "bodies.lower.support='roller'",

@@ -13,7 +13,7 @@ from partialslip.study import cost
 from partialslip.study.batch.job import Job, ProcessCost, solve_apart
 from partialslip.study.batch.job import _known as known
 from partialslip.study.batch.ledger import Ledger
-from partialslip.study.cost import errors_svg, phases_svg
+from partialslip.study.cost import phases_svg
 
 SCENE = partialslip.load_scene("hertz-large-tension")
 
@@ -149,17 +149,6 @@ def test_panels_of_phases_without_data_are_left_out():
     both = phases_svg([point("P4, adapted", 1.0, 1e-3), point("P4, adapted", 4.0, 1e-5, 4000)], "two")
     assert {"CPU s of the process", "CPU s of the method", "P4, adapted: 1.00"} <= {*texts(both)}
     assert phases_svg([replace(point("exact", 1.0, 0.0), counts={})], "none") == ""
-
-
-def test_seconds_have_plain_labels_that_do_not_touch():
-    """A short axis has three labels in a decade, a long one the powers of ten alone."""
-    short, long = (
-        texts(errors_svg([point("P4", least, 1e-3), point("P4", most, 1e-5)], [], "one", 1e-4))
-        for least, most in ((0.55, 3.9), (0.55, 800.0))
-    )
-    assert {"1", "2"} <= {*short}
-    assert {"1", "10", "100"} <= {*long}
-    assert not {"2", "20"} & {*long}
 
 
 def test_a_peer_is_met_at_its_best_error_and_in_its_time():

@@ -15,7 +15,7 @@ from partialslip.friction.coulomb_constant_pressure import march as follow_path
 from partialslip.friction.load_path import Path, stretched
 from partialslip.march import method as marching
 from partialslip.scene.plan import reduced
-from partialslip_fem import Kept, bodies, condensation, solving
+from partialslip_fem import bodies, condensation, solving
 from partialslip_fem import method as fem_method
 
 SIZE = "fem.size=0.1"
@@ -306,14 +306,6 @@ def test_coupling_left_out_is_the_uncoupled_solution():
     assert without.counts["bodies"] == 2
     assert 1e-4 < abs(without.a - unlike.a) / unlike.a < 0.1
     assert without.traction.q1 == pytest.approx(-without.traction.q2, abs=1e-12 * unlike.p0)
-
-
-def test_a_kept_mesh_is_not_made_again(monkeypatch):
-    keep = Kept()
-    first, other = load_scene("hertz-shear", [SIZE]), load_scene("hertz-shear", [SIZE, "load.Q=[-1e5, 1e5]"])
-    fem_method.solve(first, plan(first), keep=keep)
-    monkeypatch.setattr(bodies, "block", None)
-    assert fem_method.solve(other, plan(other), keep=keep).counts["factorizations"] == 0
 
 
 @pytest.mark.slow
