@@ -31,9 +31,8 @@ SETTINGS = [  # of runs: adaptive and not, one body and two, both factors, with 
 def solved(settings, keep=None):
     """Everything that a run finds, and what it counts."""
     pytest.importorskip("cvxopt")
-    fem = partialslip.run(partialslip.load_scene("hertz-shear", [*COARSE, *settings]), ["fem"], keep=keep).results[
-        "fem"
-    ]
+    scene = partialslip.load_scene("hertz-shear", [*COARSE, *settings])
+    fem = partialslip.run(scene, ["fem"], keep=keep)["fem"]
     traction = fem.traction
     columns = [getattr(traction, key) for key in ("x", "p", "q1", "q2")]
     return [np.array([fem.a, fem.m, fem.n]), *columns], dict(fem.counts)

@@ -42,7 +42,3 @@ def test_no_answer_has_a_better_grade_than_the_targets_allow():
     for folder in SCRIPT["SUBMISSIONS"].iterdir():
         for number, graded in grades(problems, read_submission(folder, problems)).items():
             assert graded.overall.grade >= best_grade(problems[number])
-
-
-def test_every_problem_has_a_short_title():
-    assert SCRIPT["NAMES"].keys() == read_problems().keys()

@@ -73,9 +73,8 @@ def wrong_left_out(whole, name):
 def hides(before, after, name):
     """Whether the standing in a group is better ``after`` something was left out, and does not show it."""
     then, now = (each.groups[GROUPS.index(name)] for each in (before, after))
-    better = now.grade not in (*_ORDER, NOT_OFFERED) or _ORDER.index(then.grade) > (*_ORDER, NOT_OFFERED).index(
-        now.grade
-    )
+    order = (*_ORDER, NOT_OFFERED)
+    better = now.grade not in order or _ORDER.index(then.grade) > order.index(now.grade)
     counts = after.counted < before.counted or name not in HEADLINE
     return (better and now.lacking <= then.lacking) or not counts
 

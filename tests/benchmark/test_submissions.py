@@ -69,9 +69,8 @@ def test_commands(tmp_path, monkeypatch, capsys):
     page = (book / "book.html").read_text("utf-8")
     assert "PS-02 Cattaneo and Mindlin" in page
     assert "partialslip march" in page
-    assert {path.name for path in book.iterdir()} >= {
-        "book.html", "problems.zip", "badge-partialslip-march.svg",
-    }  # fmt: skip
+    names = {path.name for path in book.iterdir()}
+    assert {"book.html", "problems.zip", "badge-partialslip-march.svg"} <= names
     assert main(["benchmark", "run", "--code", "ansys"]) == 2
     assert main(["benchmark", "score", "nowhere"]) == 2
     said = capsys.readouterr().err.splitlines()

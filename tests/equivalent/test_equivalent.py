@@ -224,9 +224,7 @@ def test_units_do_not_matter():
     one = solved(*UNLIKE)
     bodies = [setting.replace("e-3", "") for setting in UNLIKE]
     scene = load_scene(SCENE)
-    loads = [
-        f"load.{key}={[each * by for each in getattr(scene.load, key)]}" for key, by in (("Q", 1e-3), ("sigma", 1e-6))
-    ]
+    loads = [f"load.Q={[Q * 1e-3 for Q in scene.load.Q]}", f"load.sigma={[each * 1e-6 for each in scene.load.sigma]}"]
     other = solved(
         *bodies, *loads, "profile.R=50", f"material.E={scene.material.E * 1e-6}", f"load.p0={scene.load.p0 * 1e-6}"
     )

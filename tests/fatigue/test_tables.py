@@ -67,13 +67,6 @@ def test_the_heading_tells_whether_there_are_load_points_enough(fem):
         assert heading == f"fretting-aluminium, lower body, by fem: {len(found.phases)} load points{told}"
 
 
-def test_places_are_told_in_a_and_in_the_unit_of_the_scene(fem):
-    for scene in (SCENE, SCENE.replace(shown_in="SI")):
-        found = assess(scene, fem, ["swt"])
-        (share,), (x,) = (column(tables.rating_table(found), heading) for heading in ("x/a", "x, mm"))
-        assert float(x) == pytest.approx(float(share) * fem.a * 1e3, rel=1e-3)
-
-
 def test_the_largest_inside_has_columns_only_where_it_is_larger(fem):
     found = assess(SCENE, fem, ["swt"])
     assert "largest" not in tables.rating_table(found)[0]

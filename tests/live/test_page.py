@@ -194,12 +194,12 @@ def test_a_number_is_typed(page):
 @pytest.mark.parametrize(("control", "text"), [("Qf", "-0.1"), ("f", "0"), ("f", "1e-9"), ("sf", "1e400"), ("dQ", "")])
 def test_what_is_no_load_is_marked_and_left_out(page, control, text):
     before = answer(page)
-    page.run(
-        f"const field = document.querySelector('[type=number][data-sets={control}]'); field.focus(); field.select()"
-    )
-    page.send("Input.insertText", text=text) if text else page.run(
-        "field.value = ''; field.dispatchEvent(new Event('input'))"
-    )
+    page.run(f"const field = document.querySelector('[type=number][data-sets={control}]')")
+    page.run("field.focus(); field.select()")
+    if text:
+        page.send("Input.insertText", text=text)
+    else:
+        page.run("field.value = ''; field.dispatchEvent(new Event('input'))")
     assert page.run("field.getAttribute('aria-invalid')") == "true"
     assert answer(page) == before
     page.run("field.blur()")

@@ -80,9 +80,8 @@ def test_errors_end_where_both_contacts_end():
         found = FEM.traction.at(x)
         return found._replace(p=np.where(np.abs(x) < 0.97 * A, found.p, 1e-9))
 
-    spread = replace(
-        FEM.traction, x=np.linspace(-1.1 * A, 1.1 * A, 301), values=at(np.linspace(-1.1 * A, 1.1 * A, 301))
-    )
+    x = np.linspace(-1.1 * A, 1.1 * A, 301)
+    spread = replace(FEM.traction, x=x, values=at(x))
     run = ran(fem=replace(FEM, traction=replace(spread, at=at)))
     axes = Figure().subplots()
     draw_errors(axes, run)

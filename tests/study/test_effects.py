@@ -81,10 +81,10 @@ def spied(monkeypatch):
         monkeypatch.setattr(owner, name, counted)
 
     spy(condensation, "factor", "factor")
-    spy(bodies, "half_plane", "half_plane")
-    spy(bodies, "press", "press")
-    spy(solving.coulomb_constant_pressure, "march", "march")
-    spy(solving.coulomb_coupled, "march", "coupled")
+    for name in ("half_plane", "press"):
+        spy(bodies, name, name)
+    for owner, key in ((solving.coulomb_constant_pressure, "march"), (solving.coulomb_coupled, "coupled")):
+        spy(owner, "march", key)
     spy(condensation.Condensation, "displace", "displace")
     return calls
 
