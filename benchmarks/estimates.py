@@ -6,10 +6,12 @@ python benchmarks/estimates.py show FILE...
 
 Groups of scenes: steady (loads of all kinds), turning (large tension under which slip turns round on the way, a third
 with mean loads), plain (Hertz and flat-rounded), table (x^4, x^6 and curvatures with noise), varying (P, M or e),
-unlike (materials), finite (bodies). Truth is the exact steady state, and for q1 and q2 the exact first loading where
-the steady state keeps that. Elsewhere it is the march at the finest accuracy that it reaches; for finite bodies finite
-elements of another order on finer meshes. FILE (JSON lines) keeps what is done: a run that was stopped goes on.
-A scene that takes a method more CPU seconds than the limit is counted and left; so is a truth that takes too long.
+unlike (materials; loads: of changing P, tension or out of phase), finite (bodies); and the random scenes of verify:
+random, random-varying (P, M or e), phase (out of phase). Truth is the exact steady state, and for q1 and q2 the exact
+first loading where the steady state keeps that. Elsewhere it is the march at the finest accuracy that it reaches, or at
+a hundredth of the scene's; for finite bodies finite elements of another order on finer meshes. FILE (JSON lines) keeps
+what is done: a run that was stopped goes on. A scene that takes a method more CPU seconds than the limit is counted and
+left; so is a truth that takes too long.
 """
 
 import argparse
@@ -40,6 +42,7 @@ from partialslip.scene.reading import parse_scene
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 from partialslip.tools.threads import one_thread
+from partialslip.verify import random_scenes
 
 KEYS = ("a", "left", "right", "m", "n", "p", "q", "q1", "q2")
 KINDS = (
@@ -57,10 +60,14 @@ GROUPS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "table": (_TURNLESS, ("x^4", "x^6", "noisy")),
     "varying": (("P varies", "M varies", "e and P vary"), ("hertz", "flat-rounded")),
     "unlike": (("pressed", "cycle"), ("hertz", "hertz", "flat-rounded")),
+    "unlike-loads": (("P varies", "tension", "phase", "P varies"), ("hertz", "hertz", "flat-rounded")),
     "finite": (("pad", "block"), ("hertz", "hertz", "flat-rounded")),
 }
+RANDOM = ("random", "random-varying", "phase")  # scenes of verify
+OF_VERIFY = 8  # most cycles of them
 NUS = (0.0, 0.2, 0.3, 0.4, 0.45, 0.49, 0.499, 0.4999)
 TRUTH_OF_UNLIKE = 2e-5  # the same, where stages of pressing are many
+FINER_MARCH = 100.0  # accuracy of scenes of verify over that of the march that is their truth
 FINER = 20.0  # accuracy of finite bodies over that of their truth
 TRUTH = 1e-5  # asked of the march where it is the truth: its finest mesh, in not too many steps
 KNOWN = 0.5  # of an estimate: where the march is not known to that, it is no truth
@@ -91,6 +98,8 @@ def limited(seconds: float) -> Iterator[None]:
 def drawn(seed: int, number: int, finest: float, coarsest: float, group: str = "steady") -> tuple[str, Scene]:
     """Kind and scene of the ``group`` of that ``seed`` and ``number``."""
     random = np.random.default_rng([seed, number])
+    if group in RANDOM:
+        return of_verify(seed, number, group, coarsest * (finest / coarsest) ** random.random())
     kinds, profiles = GROUPS[group]
     kind, profile = kinds[number % len(kinds)], profiles[number % len(profiles)]
     R, a = 0.02, 1e-3
@@ -110,7 +119,7 @@ def drawn(seed: int, number: int, finest: float, coarsest: float, group: str = "
     pressed, f = contact(scene), scene.friction.f
     if group in LOADS:
         data["load"] = {"P": pressed.P, **LOADS[group](random, kind, pressed.P, pressed.a, f)}
-    if group == "unlike":  # of about the same half-width
+    if group in UNLIKE:  # of about the same half-width
         stiffer = float(random.uniform(1.0, 5.0))
         upper, lower = ({"E": 70e9 * by, "nu": float(random.uniform(0.0, 0.45))} for by in (stiffer, 1.0))
         data["material"] = {"upper": upper, "lower": lower, "plane": plane}
@@ -130,6 +139,16 @@ def drawn(seed: int, number: int, finest: float, coarsest: float, group: str = "
     if kind in ("marched", "mean"):
         data["load"]["cycles"] = {"marched": 8, "mean": 6}[kind]
     return kind, parse_scene(data)
+
+
+def of_verify(seed: int, number: int, group: str, accuracy: float) -> tuple[str, Scene]:
+    """Kind and scene of verify's random ones."""
+    phase = len(random_scenes.KINDS) - 1
+    number = number * len(random_scenes.KINDS) + phase if group == "phase" else number
+    drawn = random_scenes.draw_varying if group == "random-varying" else random_scenes.draw
+    kind, scene = drawn(seed, number)
+    cycles = {"cycles": min(scene.load.cycles or OF_VERIFY, OF_VERIFY)}
+    return kind, scene.replace(fem={"accuracy": accuracy}, load=cycles)
 
 
 def shaped(random: np.random.Generator, profile: str, R: float, a: float, A: float) -> tuple[dict[str, Any], float]:
@@ -189,6 +208,19 @@ def unlike(random: np.random.Generator, kind: str, P: float, a: float, f: float)
     return {"Q": (f * P * random.uniform(0.1, 0.7, 2) * [-1, 1]).tolist()} if kind == "cycle" else {}
 
 
+def unlike_loads(random: np.random.Generator, kind: str, P: float, a: float, f: float) -> dict[str, Any]:
+    """Q of both signs with P that varies, with tension, or a quarter of a cycle before it."""
+    forces = P * np.array([random.uniform(0.5, 0.95) if kind == "P varies" else 1.0, 1.0])
+    ways = np.array([-1.0, 1.0])
+    shear, tension = f * random.uniform(0.1, 0.7), f * P / a * random.uniform(0.0, 0.15)
+    if kind == "P varies":
+        return {"P": forces.tolist(), "Q": (shear * forces * ways).tolist(), "cycles": 2}
+    if kind == "tension":
+        return {"Q": (shear * P * ways).tolist(), "sigma": (tension * ways).tolist()}
+    angles = np.arange(4) * np.pi / 2
+    return {"Q": (shear * P * np.sin(angles)).tolist(), "sigma": (tension * np.cos(angles)).tolist(), "cycles": 2}
+
+
 def finite(random: np.random.Generator, kind: str, P: float, a: float, f: float) -> dict[str, Any]:
     """Q of both signs and tension that is not large."""
     del kind
@@ -197,7 +229,8 @@ def finite(random: np.random.Generator, kind: str, P: float, a: float, f: float)
     return {"Q": (f * P * random.uniform(0.2, 0.8) * ways).tolist(), "sigma": (sigma * ways).tolist()}
 
 
-LOADS = {"varying": varying, "unlike": unlike, "finite": finite}
+LOADS = {"varying": varying, "unlike": unlike, "unlike-loads": unlike_loads, "finite": finite}
+UNLIKE = ("unlike", "unlike-loads")
 
 
 def bodies(random: np.random.Generator, kind: str, a: float) -> dict[str, Any]:
@@ -246,7 +279,7 @@ def loads(random: np.random.Generator, kind: str, shape: Any) -> tuple[Array, Ar
 
 def true_errors(scene: Scene, kind: str, group: str, found: Result) -> dict[str, float]:
     """Errors by key, without those that nothing is known of."""
-    if group in ("unlike", "finite"):
+    if group in (*UNLIKE, "finite", "phase"):
         return against(scene, found, finest(scene, group))
     exact = partialslip.run(scene, ["exact"]).results["exact"]
     compared = compare(found, exact, scene, None)
@@ -261,9 +294,14 @@ def true_errors(scene: Scene, kind: str, group: str, found: Result) -> dict[str,
     if truth and truth.traction.values.levels and found.traction.values.levels:
         levels = norm_errors(found.traction, truth.traction, scene.friction.f, ("q1", "q2"))
         errors |= {
-            key: off for key, off in levels.items() if truth.estimate.get(key, 0.0) <= KNOWN * found.estimate[key]
+            key: off
+            for key, off in levels.items()
+            if truth.estimate.get(key, 0.0) <= KNOWN * found.estimate.get(key, 0.0)
         }
-    return {key: error for key, error in errors.items() if error is not None}
+    errors = {key: error for key, error in errors.items() if error is not None}
+    if group in RANDOM and not {"m", "q", "q1"} <= errors.keys():
+        errors = against(scene, found, finest(scene, group)) | errors
+    return errors
 
 
 @cache
@@ -274,7 +312,8 @@ def finest(scene: Scene, group: str) -> Result:
         truth = partialslip.run(replace(scene, fem=fem), ["fem"]).results["fem"]
         # within a cell elements resolve more than its mean: means are taken over the cells of the result
         return dataclasses.replace(truth, traction=dataclasses.replace(truth.traction, cells=None))
-    finer = replace(scene, fem=replace(scene.fem, accuracy=TRUTH_OF_UNLIKE if group == "unlike" else TRUTH))
+    asked = scene.fem.accuracy / FINER_MARCH if group in RANDOM else TRUTH_OF_UNLIKE if group in UNLIKE else TRUTH
+    finer = replace(scene, fem=replace(scene.fem, accuracy=asked))
     return partialslip.run(finer, ["march"]).results["march"]
 
 
@@ -315,6 +354,8 @@ def rows(
             try:
                 with limited(limits[0]):
                     result = partialslip.run(scene, [method]).results[method]
+            except InputError:  # P that falls to nothing, or a table that ends
+                continue
             except OverTime:
                 yield row | {"over": True, "true": {}, "estimate": {}, "cpu_s": limits[0]}
                 continue
@@ -371,7 +412,7 @@ def main() -> None:
     parser.add_argument("what", choices=["run", "show"])
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
     parser.add_argument("--method", choices=["fem", "march"], default=["fem"], nargs="+")
-    parser.add_argument("--group", choices=GROUPS, default="steady")
+    parser.add_argument("--group", choices=(*GROUPS, *RANDOM), default="steady")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--finest", type=float, default=1e-7)

@@ -72,7 +72,7 @@ def _found(row: Mapping[str, str]) -> str:
     """Errors of m and n, and CPU seconds, of one method."""
     if not row:
         return ""
-    errors = ", ".join("–" if not row.get(key) else f"{float(row[key]):.0e}" for key in "mn")
+    errors = ", ".join("–" if not row.get(key) else f"{float(row[key]):.0e}".replace("e-0", "e-") for key in "mn")
     return f"{errors} ({float(row['cpu_s']):.2g})".removeprefix("–, – ")
 
 
@@ -88,16 +88,15 @@ def _loads(scene: Scene) -> list[str]:
         more.append(f"flat, b = {b / pressed.a:.4g} a")
     own = [body for body in (material.upper, material.lower) if body]
     shown = {
-        "f": ", ".join(f"{each:g}" for each in np.atleast_1d(scene.friction.given)),
+        "f": " to ".join(f"{each:g}" for each in sorted({np.min(scene.friction.given), np.max(scene.friction.given)})),
         "nu": ", ".join(f"{body.nu:g}" for body in own or [material]),
     }
     more += [f"{name} = {value}" for name, value in shown.items() if value != _USUAL[name]]
-    if max(abs(mean_Q), abs(mean_sigma)) > 1e-9:
-        more.append(f"means {mean_Q:.3g} f P, {mean_sigma:.3g} f p0")
+    means = {f"{mean_Q:.3g} f P": mean_Q, f"{mean_sigma:.3g} f p0": mean_sigma}
+    if shown := [text for text, mean in means.items() if abs(mean) > 1e-9]:
+        more.append("mean " + ", ".join(shown))
     if np.size(load.P) > 1 and np.ptp(load.P):
         more.append(f"P from {min(load.P) / max(load.P):.3g}")
-    if scene.friction.x:
-        more.append("at " + ", ".join(f"{place / pressed.a:g}" for place in scene.friction.x) + " a")
     if np.size(load.e) > 1:
         more.append(f"e of {max(load.e) / pressed.a:.3g} a")
     more += _rig(scene)

@@ -30,8 +30,8 @@ _KEPT = 2  # cost: sets of bodies in Kept: those of the first mesh, and of the u
 
 
 class Shared:
-    """What solutions on the same bodies share: the last pressing, factors of the compliance of what touches, and their
-    ``relative`` compliances, by whether p and q are coupled."""
+    """Data that solutions on the same bodies share: the last pressing, factors of the compliance at the nodes in
+    contact, and the ``relative`` compliances, by whether p and q are coupled."""
 
     def __init__(self) -> None:
         self.relative: dict[bool, Relative] = {}

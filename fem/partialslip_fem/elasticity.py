@@ -99,8 +99,11 @@ class DiscreteBody:
         return self.stiffness.shape[0] + 2 * self.inner_nodes.count
 
     def pulling(self) -> tuple[Array, Array]:
-        """Displacements of all nodes (zero but for those of the plate that pulls), and nodal forces that then pull the
-        body, (2 N,) each; :meth:`under_unit_tension` scales what they cause."""
+        """Displacements u of all nodes and nodal forces that pull the body along x, (2 N,) each.
+
+        With a plate that grips the pulled side, u is 1 along x at the gripped nodes and 0 elsewhere, and the forces are
+        -K u; without one u = 0, and the forces are those of a traction. :meth:`under_unit_tension` scales the response.
+        """
         assert self.pull is not None
         moved = np.zeros(len(self.pull))
         moved[self.gripped] = 1.0

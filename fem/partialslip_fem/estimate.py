@@ -7,13 +7,13 @@ between the two solutions is about the latter. The error of order k is then d^(k
 error is d itself. If shear is confined to narrow strips, the prefactor is the norm of the shear.
 
 Where ends of zones wander (:attr:`partialslip_fem.mesh_solution.MeshSolution.wanders`), they leave kinks in q within
-elements. Errors then hardly depend on the order, and the change of m, n and q is itself the error. Where slip turns
-round, load steps have no part in it, and both solutions may agree at the ends by chance: the ends are known no better
-than the slip that the way has locked in (:mod:`partialslip_fem.locked`). An end that drifts is read twice, from the
-room that q has left and from the loads at which the nodes beside it stuck again
+elements. Errors then hardly depend on the order, and the change of m, n and q is itself the error. Where slip reverses,
+load steps have no part in it, and both solutions may agree at the ends by chance: the ends are known no better than the
+slip that the way has locked in (:mod:`partialslip_fem.locked`). An end that drifts is read twice, from the room that q
+has left and from the loads at which the nodes beside it re-stuck
 (:attr:`partialslip.friction.zone_ends.StickInterval.caught`): it is not known better than both readings agree. One that
-turned round and came back is not known better than the nodes beside it are apart, if these do not tell how far it came.
-Where it turned round q has a kink, which elements of both orders miss alike.
+reversed and came back is not known better than the nodes beside it are apart, if these do not tell how far it came.
+Where it reversed q has a kink, which elements of both orders miss alike.
 
 Where the gap's curvature jumps within elements, p has a kink of the kind x log|x| there. Errors then fall slowly with
 the order: like those of q at kinks, they are a part of the change.
@@ -47,7 +47,7 @@ KEYS = (*END_KEYS, "p", *_SHEARS)
 _SAFE = {"a": 3.0, "left": 3.0, "right": 3.0, "m": 1.3, "n": 1.3, "p": 2.6, "q": 2.0, "q1": 2.0, "q2": 2.0}
 _EASED_SAFE = {6: 2.0}  # accuracy: the same for meshes that grow faster near the ends, by order
 _LEAST_OF_A = 1 / 3  # accuracy: of the error of a: least error of any end
-# accuracy: Least errors of m and n where slip turns round, measured: in their own change; and the largest one due to
+# accuracy: Least errors of m and n where slip reverses, measured: in their own change; and the largest one due to
 # slip that is locked in, in the change of q.
 _OF_TURNED, _MOST = 0.2, 2.0
 _NARROW = 0.1  # accuracy: of the norm of f p: shear with a smaller norm is confined to narrow strips
@@ -63,7 +63,7 @@ _FIT = np.array([8.0, 2.0])
 # accuracy: error of an end due to the fit, in the distance of both fits, as the shorter one has a part of that error
 # (measured on exact forces beside kinks of flat-rounded profiles: 1.1 to 1.6)
 _READ = 1.5
-# accuracy: The same of bodies of unlike materials, where p and q vary with each other, in the element size
+# accuracy: The same of bodies of dissimilar materials, where p and q vary with each other, in the element size
 # (measured): after a cycle, and under a flat punch, whose corner is to be found, too. Ends of their contact: where
 # the slip zone is wider than an element, whose p is a power of the distance, and where it is not.
 _COUPLED, _PUNCHED = 0.1, 0.3
@@ -74,7 +74,7 @@ _SIDE = 0.5  # accuracy: largest error of an end due to the fit, in the element 
 # accuracy: error of an end that moves over nodes that slipped, in the element size: q is off its bound by little there
 _CAUGHT_UP = 0.05
 _KINK = 0.03  # accuracy: L2 error of q at a kink, in its strength times the element size
-# accuracy: the same where an end of the stick zone turned round, in the strength times the distance to the nearest
+# accuracy: the same where an end of the stick zone reversed, in the strength times the distance to the nearest
 # vertex (measured at 11 kinks: 0.006 to 0.1)
 _TURNED_KINK = 0.1
 _STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times element size / gap
@@ -126,7 +126,8 @@ def smooth_errors(
 
 
 def _of_locked(solution: MeshSolution, other: MeshSolution, change: float) -> list[float]:
-    """Errors of m and n, where slip turns round, due to slip that is locked in; ``change`` is that of q."""
+    """Errors e_lock of m and n under slip reversal due to locked-in slip, half-widths; ``change`` is the relative
+    change of q between both solutions, which limits them."""
     assert solution.history
     strengths = _strengths(solution, [solution.history.change / 2], solution.zone_ends[2:4])[0]
     errors = locked_in(solution, other, strengths) / solution.half_width
@@ -140,7 +141,12 @@ def _within_elements(solution: MeshSolution, breaks: Sequence[float]) -> bool:
 
 
 def end_errors(solution: MeshSolution, sizes: Array, inside: Array, gaps: Array, at_kinks: Array) -> dict[str, float]:
-    """Errors due to the elements at the ends, by key as for :func:`smooth_errors`.
+    """Errors due to the element sizes at the zone ends, by key as for :func:`smooth_errors`.
+
+    e_end = C(s) h, h = ``sizes``, s = ``inside``: tractions are square roots at a zone end, which two orders on one
+    mesh miss alike, so that their difference does not show e_end. C rises linearly from ``_AT_VERTEX`` at a vertex (s =
+    0) to ``_INSIDE`` at s >= ``_BESIDE`` (measured by benchmarks/estimates.py). The fit of the stick-zone ends adds a
+    term in (h/gap)^2.
 
     Parameters
     ----------
@@ -148,8 +154,7 @@ def end_errors(solution: MeshSolution, sizes: Array, inside: Array, gaps: Array,
     sizes : (k,) array
         Sizes of the elements at ``solution.zone_ends``, in contact half-widths.
     inside : (k,) array
-        How far inside these elements the ends lie, as from :meth:`MeshSolution.inside`: next to a vertex, which a mesh
-        graded to it has at an end that was known, their errors are a third or less.
+        Distances of the ends from the nearest vertex, in these elements, as from :meth:`MeshSolution.inside`.
     gaps : (2, k) array
         As from :func:`partialslip_fem.goals.gaps`.
     at_kinks : (j,) array
@@ -167,7 +172,7 @@ def end_errors(solution: MeshSolution, sizes: Array, inside: Array, gaps: Array,
     errors |= {"left": float(lefts.max()), "right": float(rights.max())}
     if solution.stick:
         fit = np.minimum((_FIT[:, None] * np.minimum(sizes / gaps, 1.0) ** 2).sum(axis=0), _SIDE) * sizes
-        if not (solution.history and solution.history.turns):  # otherwise strips and nodes that stuck again tell
+        if not (solution.history and solution.history.turns):  # otherwise strips and nodes that re-stuck tell
             read = np.minimum(_READ * np.array(solution.stick.fits) / solution.half_width, _SIDE * sizes[2:4])
             reaches = np.isfinite(gaps[:, 2:4]).any(axis=0)  # a fit has no error where nothing is near
             fit[2:4] = np.maximum(fit[2:4], reaches * read)
@@ -198,7 +203,7 @@ def _of_caught(solution: MeshSolution, sizes: Array) -> Array:
     ``sizes`` (2,) are those of the elements at the ends, in contact half-widths."""
     assert solution.stick
     apart = np.abs(np.subtract(solution.stick.caught, solution.zone_ends[2:4])) / solution.half_width
-    # nodes that slip a little once more under mean loads stick again as well, and tell nothing of the end
+    # nodes that slip a little once more under mean loads re-stick as well, and tell nothing of the end
     apart = np.where(np.isnan(apart), _SIDE * sizes, np.minimum(apart, sizes))
     return np.where(solution.stick.moved, _CAUGHT_UP * sizes + apart, 0.0)
 
@@ -323,18 +328,18 @@ def _norm(traction: PPoly) -> float:
 
 
 def _kink_errors(solution: MeshSolution, sizes: Array) -> list[float]:
-    """L2 errors of (q2 - q1)/2, q1 and q2 due to the elements of ``sizes`` (j,) at the kinks of ``solution``. Where an
-    end turned round, the kink is smoothed over as far as the nearest vertex."""
+    """L2 errors of (q2 - q1)/2, q1 and q2 due to elements of ``sizes`` (j,) at the kinks of ``solution``; where an end
+    of the stick zone reversed, the kink is smeared to the nearest vertex."""
     inside = solution.inside(np.array(solution.kinks))
     parts = np.where(_turned(solution), _TURNED_KINK * inside, _KINK)
     return np.hypot.reduce(parts * _kink_strengths(solution) * sizes, axis=1).tolist()
 
 
 def _kink_strengths(solution: MeshSolution) -> Array:
-    """Strengths of (q2 - q1)/2, q1 and q2 at the kinks of ``solution``, (3, j).
+    """Strengths of the kinks of (q2 - q1)/2, q1 and q2, (3, j).
 
-    (q2 - q1)/2 has a kink only where an end of the stick zone turned round. That point is known to half the distance of
-    two nodes: the strength is the largest one there.
+    (q2 - q1)/2 has a kink only where an end of the stick zone reversed; this point is known to half a node distance,
+    and the strength is the largest within it.
     """
     history, kinks, turned = solution.history, np.array(solution.kinks), _turned(solution)
     assert history
@@ -347,7 +352,7 @@ def _kink_strengths(solution: MeshSolution) -> Array:
 
 
 def _turned(solution: MeshSolution) -> Mask:
-    """Whether an end of the stick zone turned round at each of the kinks of ``solution``, (j,)."""
+    """Whether an end of the stick zone reversed at each of the kinks of ``solution``, (j,)."""
     apart = np.abs(np.subtract.outer(np.array(solution.kinks), solution.turning))
     return (apart <= _between_nodes(solution)[:, None]).any(axis=1)
 

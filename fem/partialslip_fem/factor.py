@@ -29,10 +29,10 @@ class Factor(Protocol):
     made: int
 
     def take_inverse_of_schur(self) -> tuple[Array, Array]:
-        """Return the inverse of the Schur complement onto the last unknowns, (n, n), and their values under each of
-        the fields of the held unknowns, (n, k).
+        """Return S^-1 (n, n), with S the Schur complement onto the last n unknowns, and the values of these n unknowns
+        under each field of the held unknowns, (n, k).
 
-        This may use the factor up: a later :meth:`back_substitute` then factors the matrix again.
+        The factor may be used up: a later :meth:`back_substitute` then factors the matrix again.
         """
 
     def back_substitute(self, load: Array) -> Array:

@@ -76,8 +76,8 @@ class OutlineErrors(NamedTuple):
 
     @classmethod
     def at(cls, accuracy: float, problem: ScaledProblem, mesh: "NextMesh | None" = None) -> "OutlineErrors":
-        """What ``accuracy`` requires in ``problem``; on a ``mesh`` on the way to it, chords as good as the mesh is away
-        from the ends of zones."""
+        """Errors of facets and corners that ``accuracy`` allows in ``problem``; on an intermediate ``mesh``, coarser
+        facets suffice: facet_error is in proportion to the error away from the zone ends."""
         found = max(_KNOWN * mesh.size / mesh.finer / (_AWAY_SHARE * AIM), accuracy) if mesh else accuracy
         corner_error = min(_CORNER_ERROR * accuracy, LOOSEST)
         tilting = any(part.extent for part in problem.parts)
@@ -99,8 +99,8 @@ class NextMesh(NamedTuple):
 
 
 class MeshPlan(NamedTuple):
-    """What the next ``mesh`` is made of: elements of ``order``, whose size at the ends is on the way to ``enough``;
-    ``outline``: what becomes of round faces and corners."""
+    """Plan of the next ``mesh``: elements of ``order``, whose size at the zone ends is on the way to ``enough``, and
+    the errors of its ``outline``, round faces and corners."""
 
     mesh: NextMesh
     order: int
@@ -126,8 +126,8 @@ class Goal:
         Largest error due to the elements at the ends.
     growth : float
         Growth of the elements for which the error away from the ends is small enough.
-    outline : Outline
-        What becomes of round faces and corners.
+    outline : OutlineErrors
+        Allowed errors of round faces and corners.
     """
 
     accuracy: float
@@ -138,7 +138,7 @@ class Goal:
 
     @classmethod
     def at(cls, accuracy: float, problem: ScaledProblem) -> "Goal":
-        """The goal for ``accuracy`` in ``problem``."""
+        """Bars, element growth and outline errors that ``accuracy`` requires in ``problem``."""
         return cls(
             accuracy=accuracy,
             bar=BAR * accuracy,
@@ -236,12 +236,11 @@ def growth_at(accuracy: float, order: int) -> float:
 
 
 def eased(solution: MeshSolution, problem: ScaledProblem, order: int, growth: float) -> Eased | None:
-    """How much faster elements of ``order`` grow near the ends of zones than with the ``growth`` far away; None if they
-    do not.
+    """Faster growth of elements of ``order`` near the zone ends than ``growth`` far away; None if growth is the same.
 
-    An end depends on elements of the size h at the distance r from it like (h/r)^(2 order) r^2, as long as tractions
-    vary over the contact half-width. Beside a kink of the profile they vary over the distance of the kink from the end
-    of the contact: corners of punches carry large parts of p and q. Where zone ends wander, they do not vary smoothly.
+    An end of a zone depends on elements of size h at the distance r like (h/r)^(2 order) r^2, as long as tractions vary
+    over the contact half-width. Beside a kink of the profile they vary over its distance from the contact edge: corners
+    of punches carry large parts of p and q. Where zone ends wander, tractions are not smooth.
     """
     if order not in _EASED_SHARE or growth >= growth_for(_EASED_BELOW, order) or solution.wanders:
         return None
@@ -256,7 +255,7 @@ def corner(solution: MeshSolution, problem: ScaledProblem) -> float:
 
 def gaps(solution: MeshSolution, problem: ScaledProblem) -> Array:
     """Distances of each zone end to the zone ends, kinks of the profile and of the coefficient of friction, and points
-    where slip turns round beside it, (2, k), in contact half-widths.
+    where slip reverses beside it, (2, k), in contact half-widths.
 
     Row 0: from each end of the stick zone to the other end of the stick zone; infinite for other ends. Row 1: to the
     nearest of all other ends and kinks.

@@ -21,8 +21,8 @@ from partialslip_fem.problem import ScaledProblem
 _MERGED = 0.1  # cost: of the smallest element: points nearer to each other are one
 # cost: of the element size that a kink needs: the mesh is refined at kinks where it is coarser than this
 _KINK_SLACK = 1.5
-# cost: element size where bodies of unlike materials touch first, in half-widths over the accuracy: p is off there by
-# 0.03 times the size (measured). The mesh is refined where elements are larger than this many times
+# cost: element size where bodies of dissimilar materials touch first, in half-widths over the accuracy: p is off there
+# by 0.03 times the size (measured). The mesh is refined where elements are larger than this many times
 _AT_FIRST, _FIRST_SLACK = 10.0, 3.0
 _AT_BENDS = 0.5  # cost: of the error at the ends: error of tractions where the gap's curvature jumps
 _OF_HALF = 0.01  # cost: element size at the corners of the second punch of pressing, in half-widths of the contact
@@ -40,7 +40,7 @@ def graded(solution: MeshSolution, problem: ScaledProblem, goal: Goal, plan: Mes
     ends = solution.zone_ends.tolist()
     points = apart([*ends, *kinks.tolist()], size * a)
     sizes = dict.fromkeys(points, size * a / coarsest)
-    if not solution.dissimilar:  # between unlike bodies q has a kink there that no slip makes, of unknown strength
+    if not solution.dissimilar:  # between dissimilar bodies q has a kink there that no slip makes, of unknown strength
         at_bends = np.maximum(estimate.bend_sizes(solution, bends, _AT_BENDS * goal.end_error), size)
         needed = dict(zip(kinks.tolist(), (at_bends * a / coarsest).tolist(), strict=True))
         sizes |= {point: needed[point] for point in points if point in needed and point not in ends}
@@ -100,8 +100,8 @@ class EndErrors(NamedTuple):
     def of(
         cls, solution: MeshSolution, problem: ScaledProblem, plan: MeshPlan, grading: Grading, a: float
     ) -> "EndErrors":
-        """Those of ``solution`` on the mesh that was made by ``plan`` and ``grading``, for a contact of half-width
-        ``a``."""
+        """Errors at the zone ends of ``solution`` on the mesh made by ``plan`` and ``grading``; ``a`` is the contact
+        half-width."""
         ends = solution.zone_ends
         in_coarsest = problem.coarsest / problem.parts[0].fineness / a
         at_ends, at_kinks = (

@@ -1,4 +1,4 @@
-"""Errors of the ends of the stick zone due to slip that is locked in where nodes stuck again on the way.
+"""Errors of the ends of the stick zone due to slip that is locked in where nodes re-stuck on the way.
 
 The ends depend on the loads and on the slip s that is locked in within the stick zone, and on nothing else: where no
 node has slipped, s is zero without any error. An error of s answers at an end like a dislocation. With the zone's
@@ -22,7 +22,7 @@ where w is singular, that is too much: an error that grows from one side of the 
 mean of w. Where the other end has come back over a part of a jump, the part that is left has a share of the error that
 does not go within the zone: there the mean counts, with the length of the whole jump. To and fro do not cancel in a
 part: l is at least L/2. Errors of different places are independent of each other: their squares are added. But slip
-that is off where an end turned round stays off for all points that the end takes after that: an end is known no better
+that is off where an end reversed stays off for all points that the end takes after that: an end is known no better
 than the sum, with signs, of what the difference of two solutions moves it by.
 """
 
@@ -40,7 +40,7 @@ _TINY = float(np.finfo(float).tiny)
 
 
 def locked_in(solution: MeshSolution, other: MeshSolution, strengths: Array) -> Array:
-    """Errors of the left and the right end of the stick zone of ``solution``, (2,), scaled.
+    """Errors of the left and the right end of the stick zone of ``solution`` due to locked-in slip, (2,), scaled.
 
     Parameters
     ----------
@@ -99,8 +99,8 @@ def _differences(solution: MeshSolution, other: MeshSolution) -> tuple[Array, Ar
 
 
 def _jumps(solution: MeshSolution) -> tuple[Array, Array]:
-    """Intervals of nodes that stuck again at the same instant, of which some are in the stick zone of ``solution``,
-    (2, j), and errors of half of the slip that is locked in there, (j,)."""
+    """Intervals over which an end of the stick zone jumped, (2, j): nodes that re-stuck in one event, some of them in
+    the stick zone of ``solution``; and errors of half the slip locked in there, (j,)."""
     stick, history = solution.stick, solution.history
     assert stick
     assert history
@@ -137,10 +137,13 @@ def _waited(since: Array, first: Indices, last: Indices) -> Array:
 
 
 def _off_the_way(instants: Array, intervals: Array, waited: Array) -> tuple[Array, Array]:
-    """How far and how long an end is off its way that jumps over ``intervals`` (2, j) at the ``instants`` (j,), (j,)
-    each: twice the distances of the middles of the jumps from the way, at most the length of the jump, and shares of
-    the leg. The distance rises evenly since the jump before and falls evenly until the jump after. Where there are no
-    such jumps it is the length of the jump, for as long as the end ``waited`` (j,)."""
+    """Distance of an end of the stick zone from its path, and duration (shares of the leg), (j,) each, at jumps over
+    ``intervals`` (2, j) at the ``instants`` (j,).
+
+    The distance is twice that of the middle of a jump from the line through the middles of the neighbouring jumps, at
+    most the length of the jump; it rises and falls linearly between these. Without neighbouring jumps: the length of
+    the jump, for the time that the end ``waited`` (j,).
+    """
     lengths, middles = intervals[1] - intervals[0], intervals.mean(axis=0)
     result, times = lengths.copy(), waited.copy()
     if len(instants) < 3:

@@ -141,7 +141,7 @@ class MeshSolution(ContactForces, Zones):
     coupled : bool
         Whether p and q were solved together.
     dissimilar : bool
-        Whether shear moves surfaces along y as it does in half-planes of unlike materials (Dundurs' beta is not 0).
+        Whether shear moves surfaces along y as it does in half-planes of dissimilar materials (Dundurs' beta is not 0).
     moving : bool
         Whether the pressure varies.
     largest : int
@@ -176,7 +176,8 @@ class MeshSolution(ContactForces, Zones):
 
     @property
     def turning(self) -> list[float]:
-        """Points where an end of the stick zone turned round: kinks of q beside which its ends are known poorly."""
+        """Points where an end of the stick zone reversed: kinks of q, beside which the ends of the stick zone are
+        uncertain."""
         return self.history.turning(self.lower.x[self.nodes]) if self.history else []
 
     @property
@@ -211,8 +212,8 @@ class MeshSolution(ContactForces, Zones):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Ends of the contact at load point 2; where it moves, as it does with Q between coupled bodies, too, of all
-        that is ever in contact."""
+        """Ends of the contact at load point 2; of all that touches on the load path where the contact moves, as it does
+        with Q between coupled bodies."""
         if not (self.moving or self.coupled):
             return self.left, self.right
         ends, touched = np.array(self.contact_ends), self.lower.x[self.most > 0]

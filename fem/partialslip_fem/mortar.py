@@ -57,7 +57,7 @@ def projected(body: DiscreteBody, gap: Callable[[Array], Array], breaks: Sequenc
 
 
 def within_cells(vertices: Array, points: Sequence[float]) -> Array:
-    """Those of the ``points`` that lie between the ``vertices`` (c + 1,) of cells and on no vertex, (k,)."""
+    """``points`` inside the cells between ``vertices`` (c + 1,), without points at vertices, (k,)."""
     inside = np.array([each for each in points if vertices[0] < each < vertices[-1]])
     after = np.searchsorted(vertices, inside)
     beside = np.minimum(vertices[after] - inside, inside - vertices[after - 1])

@@ -114,7 +114,7 @@ class Part:
     @property
     def held(self) -> HeldSides:
         """Lines of the mesh that are held along x, and along y."""
-        return _held(self.support, self.pulled and not self.gripped) if self.finite else (ALL_AROUND, ALL_AROUND)
+        return _held_lines(self.support, self.pulled and not self.gripped) if self.finite else (ALL_AROUND, ALL_AROUND)
 
     @cached_property
     def exponents(self) -> dict[Corner, float]:
@@ -283,20 +283,21 @@ class ScaledProblem:
 
     @property
     def similar(self) -> bool:
-        """Whether the contact grows in similar ways, as that of half-planes in an even gap."""
+        """Whether the contact grows self-similarly, as between half-planes under an even gap."""
         return self.even_gap is not None and not self._sized
 
     @property
     def touches_first(self) -> float | None:
-        """Point at which bodies of unlike materials touch first under an even gap: q, locked in while they are pressed
-        together, varies there like x log|x|, and p like |x|. None where there is no such point."""
+        """Point at which bodies of dissimilar materials touch first under an even gap: q, locked in while they are
+        pressed together, varies there like x log|x|, and p like |x|. None where there is no such point."""
         if self.even_gap is None or self.even_gap.places[0] or not (self.beta and self.path) or self.start:
             return None
         return -self.origin
 
     @property
     def sized(self) -> bool:
-        """The same, nearly, of bodies of one material and of a size, which are coupled."""
+        """Whether the contact grows nearly self-similarly although p and q are coupled: bodies of one material, of
+        finite size, under an even gap."""
         even = self.even_gap is not None and (self.even_gap.parabolic or all(part.even for part in self.parts))
         return even and self._sized and self.coupled and not (self.beta or self.start)
 
@@ -382,7 +383,7 @@ def rescaled(polynomials: PPoly, value: float, length: float, origin: float = 0.
     return PPoly(polynomials.c * value / length**powers, polynomials.x * length + origin)
 
 
-def _held(support: Support, pulled: bool) -> HeldSides:
+def _held_lines(support: Support, pulled: bool) -> HeldSides:
     """Lines of a finite body that its ``support`` holds along x, and along y; not the right side, if it is ``pulled``
     by a traction."""
     along_x, along_y = ([line for line in lines if line != "right" or not pulled] for lines in _HELD[support])
@@ -397,7 +398,7 @@ def _finite(plain: Part, body: Body | None, scene: Scene, L: float) -> Part:
     face = PadFace(scene.profile, L) if body.kind == "pad" else None
     part = replace(plain, face=face, support=body.support, pulled=body.pulled, gripped=body.gripped)
     if body.mesh is not None:
-        needed = {*itertools.chain(*_held(body.support, False))} | ({"right"} if body.pulled else set())
+        needed = {*itertools.chain(*_held_lines(body.support, False))} | ({"right"} if body.pulled else set())
         field = f"bodies.{part.name}.mesh"
         unit = (body.unit or 1.0) / L
         groups = body.groups.given if body.groups else {}

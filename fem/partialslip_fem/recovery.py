@@ -60,16 +60,20 @@ class Polynomials:
     origin: float
 
     def at(self, x: Array) -> TractionAt:
-        """Tractions at ``x`` (k,), m, in Pa; zero off their cells."""
+        """p, q1 and q2 (Pa) at ``x`` (k,), m; zero outside the cells of the polynomials."""
         return self.scaled((x - self.origin) / self.length)
 
     def scaled(self, x: Array) -> TractionAt:
         """Tractions at ``x`` (k,), scaled, in Pa; zero off their cells."""
-        q1, q2 = (self._inside(each, x) for each in self.shear) if self.shear else (np.zeros_like(x), np.zeros_like(x))
-        p1 = None if self.p1 is None else self._inside(self.p1, x)
-        return TractionAt.between(self._inside(self.p, x), q1, q2, self.known, p1)
+        q1, q2 = (
+            (self._values_on_cells(each, x) for each in self.shear)
+            if self.shear
+            else (np.zeros_like(x), np.zeros_like(x))
+        )
+        p1 = None if self.p1 is None else self._values_on_cells(self.p1, x)
+        return TractionAt.between(self._values_on_cells(self.p, x), q1, q2, self.known, p1)
 
-    def _inside(self, polynomial: PPoly, x: Array) -> Array:
+    def _values_on_cells(self, polynomial: PPoly, x: Array) -> Array:
         return self.stress * inside_elements(polynomial, x)
 
 

@@ -89,7 +89,7 @@ def to_result(
     )
     return replace(
         Result.of("fem", found, solution.half_width * L, p0 * stress, traction, clock),
-        slip=_slip(history, adapted.other, estimate, x * L + origin, unit, scene.P) if history else None,
+        slip=_slip_and_work(history, adapted.other, estimate, x * L + origin, unit, scene.P) if history else None,
         settings={
             "bodies": _bodies(solution, problem),
             "elements": f"P{problem.order}",
@@ -121,7 +121,7 @@ def to_result(
     )
 
 
-def _slip(
+def _slip_and_work(
     history: History, other: History | None, errors: Mapping[str, float], x: Array, unit: float, P: float
 ) -> Slip:
     """Slip at ``x`` and work of friction; ``unit`` (m) is that of displacements."""

@@ -24,8 +24,8 @@ _ROUNDING = 1e-9  # accuracy: part of the depth of a face
 
 
 class Line:
-    """The contact line of a body and the ``tractions`` on it: pressures in s states, then shears, (2 s) in the last
-    axis. ``part`` tells whether it is round; the body above is mirrored (``side`` = -1). Scaled."""
+    """Contact line of a body (``part``, perhaps round; the upper body is mirrored, ``side`` = -1) with the
+    ``tractions`` on it: pressures in s states, then shears, (2 s) in the last axis. Scaled."""
 
     def __init__(self, tractions: PPoly, part: Part, side: float) -> None:
         self._side, self._x, self._round = side, tractions.x, part.face is not None
@@ -97,9 +97,9 @@ class BodyStresses:
 
     def inside(self, x: Array, y: Array, phases: Array) -> Array:
         """Stresses (s, 3, k), Pa, at points (``x``, ``y``), m, (k,) each, and ``phases`` (s,) from 0 to 1."""
-        return self.phases.interpolate(lambda steps: self._at(x, y, list(steps)), phases)
+        return self.phases.interpolate(lambda steps: self._stresses_by_body(x, y, list(steps)), phases)
 
-    def _at(self, x: Array, y: Array, steps: list[int]) -> Array:
+    def _stresses_by_body(self, x: Array, y: Array, steps: list[int]) -> Array:
         result = np.empty((len(steps), 3, len(x)))
         for body, here in enumerate((y <= 0, y > 0)):
             if here.any():
@@ -112,7 +112,7 @@ class BodyStresses:
         face = -height(part, along)
         # where bodies touch, a round face is drawn flat
         touches = (along >= self.contact[0]) & (along <= self.contact[1])
-        found = self._lines[body].stresses(along, np.maximum(deep, face), steps)
+        found = self._boundary_lines[body].stresses(along, np.maximum(deep, face), steps)
         if remainder:
             rest = remainder.stresses(along, -np.maximum(deep, face), steps)
             found += rest * np.array([1.0, 1.0, side])[:, None]
@@ -124,7 +124,7 @@ class BodyStresses:
         return found
 
     @cached_property
-    def _lines(self) -> tuple[Line, ...]:
+    def _boundary_lines(self) -> tuple[Line, ...]:
         return tuple(Line(self.tractions, part, side) for part, side in zip(self._parts, (1.0, -1.0), strict=True))
 
     @cached_property

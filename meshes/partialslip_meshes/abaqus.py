@@ -146,7 +146,8 @@ class _Mesh:
         moved: "_Shift | None" = None,
         inside: Mapping[str, _Placed] | None = None,
     ) -> _Placed:
-        """Add nodes and elements of the ``scope`` to the mesh."""
+        """Add the nodes and elements of a part or instance (``scope``), ``moved`` to the instance's place, to the mesh;
+        return their indices there."""
         numbers = joined([numbers for numbers, _ in scope.nodes])
         points = np.concatenate([np.empty((0, 3)), *(points for _, points in scope.nodes)])
         nodes = _ascending(numbers, self.counted[0] + np.arange(len(numbers)), "node")
@@ -327,7 +328,7 @@ def _split(placed: _Placed, member: str) -> tuple[_Placed, str]:
 
 
 def _members(placed: _Placed, own: _Card | Indices) -> Iterator[tuple[_Placed, Indices, list[str]]]:
-    """Scope, numbers (k,) and names in lower case of the members of a set."""
+    """Scope, node or element numbers (k,) and names of sets (lower case) of the members of a set, line by line."""
     if not isinstance(own, _Card):
         yield placed, own, []
         return

@@ -104,7 +104,7 @@ def _outlined(
     corners: Mapping[Corner, float] | None,
     eased: Eased | None = None,
 ) -> Meshed:
-    """Mesh the block of :func:`block` with elements of so many ``nodes``."""
+    """Mesh of the block of :func:`block` with elements of ``nodes`` nodes each."""
     height = width if height is None else height
     at_corners: dict[Corner, float] = {"notch": _NOTCH_SIZE * width} if holder else {}
     at_corners.update(corners or {})

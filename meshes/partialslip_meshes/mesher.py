@@ -132,7 +132,7 @@ def mesh(gmsh: ModuleType, corners: int, smooth: float, options: Mapping[str, fl
             gmsh.option.setNumber(f"Mesh.{option}", value)
         gmsh.model.mesh.generate(2)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        cells = [_cells(gmsh, 2, [-1]), *(_cells(gmsh, 1, curves) for curves in lines.values())]
+        cells = [_element_nodes(gmsh, 2, [-1]), *(_element_nodes(gmsh, 1, curves) for curves in lines.values())]
     finally:
         gmsh.finalize()
     return {"lines": list(lines)}, [array("Q", tags).tobytes(), array("d", coordinates).tobytes(), *cells]
@@ -156,7 +156,7 @@ def rewrite(gmsh: ModuleType, path: str, target: str) -> tuple[dict[str, Any], l
     return {}, []
 
 
-def _cells(gmsh: ModuleType, dimension: int, entities: Sequence[int]) -> bytes:
+def _element_nodes(gmsh: ModuleType, dimension: int, entities: Sequence[int]) -> bytes:
     """Node tags of the elements of all ``entities``, in order."""
     return b"".join(
         array("Q", nodes[0]).tobytes()

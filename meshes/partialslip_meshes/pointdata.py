@@ -14,7 +14,8 @@ WRITTEN_FORMATS = {".vtu", ".vtk", ".xdmf", ".xmf", ".msh", ".med", ".e", ".exo"
 
 
 def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.NDArray[np.float64]]]:
-    """Points (n, 3), and values (n,) by name, of the file ``path``, whose suffix tells the format.
+    """Points (n, 3), and values (n,) by name, of the file ``path``, whose suffix tells the format; of vectors by name
+    and number, as in ``name:0``.
 
     If the mesh has line cells, only their points are returned.
 
@@ -30,8 +31,12 @@ def read_point_data(path: Path) -> tuple[npt.NDArray[np.float64], dict[str, npt.
         data = {name: np.asarray(values, dtype=float) for name, values in mesh.point_data.items()}
         lines = [block.data.ravel() for block in mesh.cells if block.type.startswith("line")]
         on_line = np.unique(np.concatenate(lines)).astype(int) if lines else np.arange(len(points))
-        scalars = {name: values.reshape(len(points), -1) for name, values in data.items()}
-        return points[on_line], {name: v[on_line, 0] for name, v in scalars.items() if v.shape[1] == 1}
+        rows = {name: values.reshape(len(points), -1)[on_line] for name, values in data.items()}
+        return points[on_line], {
+            name if of.shape[1] == 1 else f"{name}:{k}": of[:, k]
+            for name, of in rows.items()
+            for k in range(of.shape[1])
+        }
     except (ValueError, IndexError, TypeError):
         raise InputError(f"{path}: points, lines and point data must have matching sizes") from None
 

@@ -80,7 +80,7 @@ def read(
     corners = _ccw(points, _triangles(found, points, _chosen(found, body, refuse), refuse), refuse)
     boundary = _boundary(corners, len(points), found, refuse)
     _check_cracks(points, boundary, refuse)
-    lines = {key: edges for key, edges in _lines(found, corners, boundary, groups or {}, refuse) if len(edges)}
+    lines = {key: edges for key, edges in _named_lines(found, corners, boundary, groups or {}, refuse) if len(edges)}
     for key in ("contact", *needed):
         if key not in lines:
             here = found.named(bodies=False)
@@ -167,7 +167,7 @@ def _by_meshio(name: str, path: str, refuse: Refuse) -> Found:
 
 
 def _chosen(found: Found, body: str | int | None, refuse: Refuse) -> npt.NDArray[np.bool_]:
-    """Which elements belong to the ``body``, through all blocks; without one all do."""
+    """Mask of the elements that belong to ``body``, over all blocks of elements; all without a ``body``."""
     count = sum(len(cells) for _, cells in found.cells)
     if body is None:
         return np.ones(count, dtype=bool)
@@ -278,7 +278,7 @@ def _check_cracks(points: _Array, boundary: _Indices, refuse: Refuse) -> None:
         refuse(f"must have elements that share whole sides; cracks between elements: {cracks}")
 
 
-def _lines(
+def _named_lines(
     found: Found, corners: _Indices, boundary: _Indices, names: Mapping[str, str | int], refuse: Refuse
 ) -> Iterator[tuple[str, _Indices]]:
     """Name and boundary edges of each line; ``names`` are those of their groups in the file. Members outside the body

@@ -69,7 +69,7 @@ effects.friction=1 => hertz-shear: effects.friction = 1: must be true or false, 
 """,
     "score hertz-shear": """
  => FILE: missing
-t.csv u.csv => unknown argument u.csv
+t.csv u.csv => u.csv: cannot be read
 t.csv --template => --template t.csv: must go without a file
 t.doc => t.doc: must end in .csv, .txt, .tsv, .rpt, .frd, .dat
 t.csv --factors 1 => --factors 1: must be three numbers

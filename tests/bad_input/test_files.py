@@ -25,8 +25,8 @@ def lines(text, **changes):
 
 TABLES = [
     ("", "empty: must have a header line"),
-    ("x,p,dq\n", "p > 0 at 0 points: must be at least 6"),
-    (TABLE.partition("\n")[2], "line 1: must be a header line with x, p and dq"),
+    ("x,p,dq\n", "line 1: no row of numbers follows"),
+    (TABLE.partition("\n")[2].replace("\n", ",1\n"), "line 1: must be a header line with x, p and dq"),
     (TABLE.replace("x,p,dq", "x,p"), "line 2: must have 2 fields, like the header line"),
     (TABLE.replace("x,p,dq", "x,p,tau"), "columns 'x', 'p', 'tau': must be"),
     (TABLE.replace("x,p,dq", "X,P,DQ"), "columns 'X', 'P', 'DQ': must be"),
@@ -34,27 +34,22 @@ TABLES = [
     (TABLE.replace("x,p,dq", "x,Fn,q"), "columns Fn and q: must be both tractions or both forces"),
     (TABLE.replace("x,p,dq", "x,x,dq"), "column 'x': must be there once, not 2 times"),
     (TABLE.replace("x,p,dq", "x,p,q1"), "columns 'x', 'p', 'q1': must be"),
-    (TABLE.replace("x,p,dq", "x p dq"), "line 2: must have 3 fields"),
+    (TABLE.replace("x,p,dq", "x 2 dq"), "line 1: must be a header line of 3 names, like line 2"),
     (TABLE.replace("\n", ",1\n").replace("x,p,dq,1", "x,p,dq,q"), "'dq', 'q': must be"),
     (lines(TABLE, L3="1,2"), "line 3: must have 3 fields"),
     (lines(TABLE, L4="a,2,3"), "line 4: x = 'a': must be a number"),
     (lines(TABLE, L4="1e-4,1 2,3"), "line 4: p = '1 2': must be a number"),
-    (lines(TABLE, L4='1e-4,"1,3'), "line 4: p = '\"1': must be a number"),
-    (lines(TABLE, L4="nan,1,3"), "line 4: x = nan: must be zero or of a size"),
+    (lines(TABLE, L4='1e-4,"1,3'), "line 4: must have 3 fields"),
     (lines(TABLE, L4="1e-4,inf,3"), "line 4: p = inf: must be zero or of a size"),
     (lines(TABLE, L4="1e-4,1e200,3"), "line 4: p = 1e200: must be zero or of a size"),
     (lines(TABLE, L4="1e-4,1e-200,3"), "line 4: p = 1e-200: must be zero or of a size"),
-    (TABLE.replace("\n", "\n#"), "p > 0 at 0 points"),
+    (TABLE.replace("\n", "\n#"), "line 1: no row of numbers follows"),
     (lines(TABLE, L1="x,p,dq")[:150], ""),
     ("x,p,dq\n" + "0,1e8,0\n" * 50, "p > 0 at 1 points"),
-    (
-        "x,p,dq\n" + "".join(f"{x!r},{-p!r},0\n" for x, p in zip(X.tolist(), P.tolist(), strict=True)),
-        "pressure must be positive",
-    ),
     ("x,p,dq\n" + "".join(f"{x!r},0,0\n" for x in X.tolist()), "p > 0 at 0 points"),
     ("x,p,dq\n" + "".join(f"{i},{i % 2 * 1e8},0\n" for i in range(60)), "must exceed its noise"),
     ("x,Fn,dFt\n" + "".join(f"{i},{1 + i % 2 * 1e8},0\n" for i in range(60)), "another order (--order)"),
-    ("x,p,dq\n" + "\x00" * 99, "line 2: must have 3 fields"),
+    ("x,p,dq\n" + "\x00" * 99, "must be text; character 8 is not"),
 ]
 
 
@@ -66,11 +61,11 @@ def test_tables(rejected, tmp_path, text, expected):
     assert expected in message
 
 
-@pytest.mark.parametrize("content", [b"\x80" * 50, b"x,p,dq\n\xe4,1,2\n"])
+@pytest.mark.parametrize("content", [b"\x80\x01" * 50, b"x,p,dq\n\x02,1,2\n"])
 @pytest.mark.parametrize("name", ["t.csv", "t.frd", "t.dat"])
 def test_no_text(rejected, tmp_path, content, name):
     (tmp_path / name).write_bytes(content)
-    assert "must be UTF-8 text" in rejected(None, ["score", "hertz-shear", name])
+    assert "must be text" in rejected(None, ["score", "hertz-shear", name])
 
 
 @pytest.mark.parametrize("name", ["t.csv", "t.frd", "t.dat", "t.vtu", "t.xdmf", "t.msh", "t.med", "t.vtk", "nul\0.csv",
@@ -139,13 +134,12 @@ def test_dat_without_its_mesh(rejected, tmp_path):
 
 
 MESHES = {
-    "no data": ({}, "point data none: must have p"),
-    "no shear": ({"p": P}, "point data 'p': must have p, and one of dq"),
-    "too much shear": ({"p": P, "q": P, "dq": P}, "must have p, and one of dq"),
-    "vectors": ({"p": np.stack([P] * 3, axis=1), "dq": P}, "point data 'dq': must have p"),
+    "no data": ({}, "must be x; p or Fn"),
+    "no shear": ({"p": P}, "must be x; p or Fn; and one of dq"),
+    "too much shear": ({"p": P, "q": P, "dq": P}, "must be x; p or Fn; and one of dq"),
+    "vectors": ({"p": np.stack([P] * 3, axis=1), "dq": P}, "'p:2', 'dq': must be x; p or Fn"),
     "all nan": ({"p": np.full(23, np.nan), "dq": P}, "p > 0 at 0 points"),
     "infinite": ({"p": np.full(23, np.inf), "dq": P}, ""),
-    "pulled": ({"p": -P, "dq": P}, "pressure must be positive"),
     "few": ({"p": np.where(np.abs(X) < 1.5e-4, P, 0), "dq": P}, "must be at least 6"),
 }
 
@@ -167,7 +161,7 @@ def test_meshes(rejected, tmp_path, fault, ending):
 
 def test_a_mesh_that_is_no_line(rejected, tmp_path):
     meshio.write(tmp_path / "t.vtu", mesh({"p": P, "dq": P}, y=np.arange(23) * 1e-4))
-    assert "apart across x: must be on one line" in rejected(None, ["score", "hertz-shear", "t.vtu"])
+    assert "lie apart across x: must be on one line" in rejected(None, ["score", "hertz-shear", "t.vtu"])
 
 
 @pytest.mark.parametrize(

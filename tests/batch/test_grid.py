@@ -102,7 +102,7 @@ def test_columns_of_another_method():
     """Those of the reference have no prefix; errors and estimates belong to the other method."""
     entry = made.solved(known.SCENE, errors={"a": 1e-5, "m": 2e-5, "n": 3e-5, "p": 4e-5, "q": 5e-5},
                         exact={"estimate": {}}, fem={"a": 1.0, "estimate": {"m": 1e-4, "left": 2e-4}})  # fmt: skip
-    row = grid._row({"friction.f": 0.5}, entry)
+    row = grid._point_row({"friction.f": 0.5}, entry)
     assert (row["method"], row["a"], row["fem.a"]) == ("exact", known.A, 1.0)
     assert {key: row[key] for key in row if "error" in key or "estimate" in key} == {
         "fem.error.a": 1e-5, "fem.error.m": 2e-5, "fem.error.n": 3e-5, "fem.error.p": 4e-5, "fem.error.q": 5e-5,

@@ -16,7 +16,7 @@ from partialslip.cli import main
 from partialslip.run import run
 from partialslip.verify.benchmark import handed_in, read_problems, read_submission, tables
 from partialslip.verify.benchmark import handin as checks
-from partialslip.verify.benchmark.tables import answer_from
+from partialslip.verify.benchmark.tables import read_table
 
 KNOWN = read_problems()
 PROBLEM = KNOWN["PS-02"]
@@ -44,7 +44,7 @@ def folder(tmp_path, table, monkeypatch):
     (made / "decks" / "job.inp").write_text(DECK, "utf-8")
     (made / "meta.toml").write_text(tomli_w.dumps(META), "utf-8")
     (made / "PS-02.csv").write_text(table, "utf-8")
-    answer = {"values": answer_from(PROBLEM, made / "PS-02.csv").values, "cpu_s": 12.5}
+    answer = {"values": read_table(PROBLEM, made / "PS-02.csv").values, "cpu_s": 12.5}
     (made / "PS-02.json").write_text(json.dumps(answer), "utf-8")
     return made
 

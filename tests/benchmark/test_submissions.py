@@ -80,6 +80,21 @@ def test_commands(tmp_path, monkeypatch, capsys):
     ]
 
 
+def test_likely_mistakes_are_told_with_what_corrects_them(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    problem = SOME["PS-02"]
+    exact = run(problem.scene, "exact")["exact"]
+    x = np.linspace(-1.05, 1.05, 201) * exact.a
+    for name, sign in (("one", 1), ("two", -1)):
+        table = np.column_stack([x * 1e3, *exact.traction.at(x)[:2]]) * [1, 1e-6, sign * 0.5e-6]
+        np.savetxt(tmp_path / f"{name}.txt", table)
+    assert main(["benchmark", "read", "PS-02", "two.txt", "one.txt", "-o", "new", "--factors", "1e-3,1e6,1e6"]) == 0
+    assert "no heading: read as --columns x=1, p=2, q=3" in capsys.readouterr().out
+    assert main(["benchmark", "read", "PS-02", "one.txt", "two.txt", "-o", "turned"]) == 0
+    told = "x may be in mm, p may be in MPa, dq may be in MPa of the opposite sign: correct with --factors "
+    assert f"{told}0.001,1e+06,-1e+06" in capsys.readouterr().out
+
+
 @pytest.fixture
 def tables(tmp_path, monkeypatch):
     """Work in a folder with two different tables of tractions for PS-02."""

@@ -133,7 +133,7 @@ def test_settings_that_are_left_out_of_the_request_are_noticed(monkeypatch):
     every = (EXACT, (*EXACT[:-1], "march"))
     assert [main(each) for each in every] == [0, 0]
     assert len(folders()) == 2
-    monkeypatch.setattr(common, "_plain", lambda _: {})
+    monkeypatch.setattr(common, "_given_settings", lambda _: {})
     monkeypatch.chdir("results")
     assert [main(each) for each in every] == [0, 0]
     assert folders() == ["hertz-shear"]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from plain import plain
 
 import partialslip
 from partialslip.result.rig import Rig
@@ -9,11 +10,10 @@ from partialslip.study.fatigue import hot_spots
 from partialslip.study.fatigue.spots import off_by
 
 BLOCK = {"width": 2e-3, "height": 2e-3}  # about 10 a
-SCENE = partialslip.parse_scene({
-    "name": "blocks", "material": {"E": 72.1e9, "nu": 0.33}, "profile": {"kind": "hertz", "R": 0.01},
-    "friction": {"f": 0.3}, "load": {"P": 135750.0, "Q": [-30e3, 30e3], "sigma": [-2e7, 2e7]},
-    "bodies": {"upper": BLOCK, "lower": BLOCK}, "fatigue": {"distance": 2e-5}, "fem": {"accuracy": 1e-5},
-})  # fmt: skip
+SCENE = plain(
+    {"P": 135750.0, "Q": [-30e3, 30e3], "sigma": [-2e7, 2e7]},
+    bodies={"upper": BLOCK, "lower": BLOCK}, fatigue={"distance": 2e-5}, fem={"accuracy": 1e-5},
+)  # fmt: skip
 DEPTHS = (-1.0, -0.3, 0.3, 1.0)  # of both bodies, in a
 
 

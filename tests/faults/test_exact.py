@@ -54,13 +54,13 @@ def test_modulus_for_the_parameter(monkeypatch, sound, red):
 @pytest.mark.fault
 def test_moment_about_the_middle_without_its_term(monkeypatch, sound, red):
     """The second condition has moments about the stick zone's centre; about x = 0 a term of dsigma belongs to it."""
-    scene, true = sound(LARGE), steady._at
+    scene, true = sound(LARGE), steady._conditions
 
     def about_the_middle(shape, edge, c, _=None):
         at = true(shape, edge, c)
         return at._replace(Qf=at.Qf + (np.abs(edge) + c - 1) * at.sf / 4)
 
-    monkeypatch.setattr(steady, "_at", about_the_middle)
+    monkeypatch.setattr(steady, "_conditions", about_the_middle)
     red("certificate: shear", closed_form(scene).certificate["shear"], CERTIFICATE_BAR)
 
 

@@ -187,7 +187,7 @@ def test_iteration_that_ends_before_it_has_converged(monkeypatch, sound, red):
         return (total - line.total) / line.slope
 
     def hasty(self, shift):
-        x, r, _ = self._at(shift)
+        x, r, _ = self._solution_and_sides(shift)
         return x, r, self._solutions().slope
 
     def in_haste(*args):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from plain import plain
 
 import partialslip
 from partialslip.halfplane import contact
@@ -58,16 +59,10 @@ def table():
     """x^6 at 25 points, accuracy 5e-7: a coarse table, whose curvature jumps by much."""
     a = 1e-3
     x = np.linspace(0, 1.7, 25) * a
-    scene = {
-        "name": "table",
-        "material": {"E": 70e9, "nu": 0.3, "plane": "strain"},
-        "friction": {"f": 0.5},
-        "profile": {"kind": "tabulated", "x": x.tolist(), "gap": (a**2 / 0.06 * (x / a) ** 6).tolist()},
-        "fem": {"accuracy": 5e-7},
-    }
+    profile = {"kind": "tabulated", "x": x.tolist(), "gap": (a**2 / 0.06 * (x / a) ** 6).tolist()}
     A = 4 * (1 - 0.3**2) / 70e9
     P = a**2 / 0.01 / A * math.pi * 15 / 48
-    return partialslip.parse_scene({**scene, "load": {"P": P, "Q": [-0.25 * P, 0.25 * P]}})
+    return plain({"P": P, "Q": [-0.25 * P, 0.25 * P]}, 0.5, (70e9, 0.3), profile, fem={"accuracy": 5e-7})
 
 
 def ratios(scene):

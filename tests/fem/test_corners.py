@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from plain import plain
 
-from partialslip import parse_scene, plan
+from partialslip import plan
 from partialslip_fem import goals, solve
 from partialslip_fem.corners import free_exponent, held_exponent, size
 from partialslip_fem.problem import Part
@@ -49,19 +50,12 @@ def test_meshes_are_fine_at_the_corners():
 def middle():
     """Of the contact, in a, of a clamped block on a plate that slides and is pulled."""
     a = 1e-3
-    data = {
-        "name": "tilted",
-        "material": {"E": 72.8e9, "nu": 0.3},
-        "friction": {"f": 0.5},
-        "profile": {"kind": "hertz", "R": 1.0},
-        "load": {"a": a, "Q": [-9e3, 9e3], "sigma": [-5e6, 5e6]},
-        "fem": {"accuracy": 1e-3},
-        "bodies": {
-            "lower": {"width": 16 * a, "height": 5 * a, "support": "roller", "pulled": True},
-            "upper": {"width": 8 * a, "height": 8 * a, "support": "clamped"},
-        },
+    bodies = {
+        "lower": {"width": 16 * a, "height": 5 * a, "support": "roller", "pulled": True},
+        "upper": {"width": 8 * a, "height": 8 * a, "support": "clamped"},
     }
-    scene = parse_scene(data)
+    load, profile = {"a": a, "Q": [-9e3, 9e3], "sigma": [-5e6, 5e6]}, {"kind": "hertz", "R": 1.0}
+    scene = plain(load, 0.5, (72.8e9, 0.3), profile, fem={"accuracy": 1e-3}, bodies=bodies)
     result = solve(scene, plan(scene))
     return sum(result.ends[1]) / 2 / result.a, result
 

@@ -7,6 +7,7 @@ import skfem
 from numpy.polynomial.legendre import legval
 from skfem.models.elasticity import linear_elasticity
 from skfem.models.poisson import laplace
+from spying import spied
 
 from partialslip_fem import elasticity, factor
 from partialslip_fem.condensation import Condensation
@@ -87,9 +88,7 @@ def test_schur_complement_from_the_factor_is_the_inverse(half, backend):
 def test_one_factorisation(half, monkeypatch):
     """The far field's displacements of the contact line are read off the same factor; displacing all nodes needs
     another one."""
-    calls = []
-    original = factor.spla.splu
-    monkeypatch.setattr(factor.spla, "splu", lambda *args, **kw: calls.append(1) or original(*args, **kw))
+    calls = spied(monkeypatch, factor.spla, "splu")
     far = FarField(np.ones((half.held.size, 3)), np.ones((3, half.contact.size)))
     condensed = Condensation(half, far)
     assert len(calls) == 1

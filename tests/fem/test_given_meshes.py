@@ -1,21 +1,16 @@
-"""A body whose mesh is given: by netgen 6.2 (specimen.inp, in mm), written through meshio to three more formats."""
+"""A body whose mesh is given: by netgen 6.2 (specimen.inp, in mm)."""
 
 from pathlib import Path
 
 import meshio
-import numpy as np
 import pytest
 
 import partialslip
 from partialslip import load_scene, plan
 from partialslip.cli import main
-from partialslip.result import Clock
-from partialslip.tools.threads import one_thread
 from partialslip_fem import solve
-from partialslip_fem.problem import Part, scaled
-from partialslip_fem.solving import solve_on_meshes
-from partialslip_fem.uniform import uniform
-from partialslip_meshes import Mesh, block
+from partialslip_fem.problem import Part
+from partialslip_meshes import block
 
 SPECIMEN = Path(__file__).parents[1] / "meshes" / "specimen.inp"  # 40 mm x 5 mm
 SCENE = "fretting-aluminium"  # a = 0.2 mm
@@ -38,74 +33,21 @@ def found():
 
 
 @pytest.fixture(scope="module")
-def formats(found, tmp_path_factory):
-    """The same mesh in all formats, by suffix."""
-    folder = tmp_path_factory.mktemp("meshes")
-    triangles, lines = (block.data for block in found.cells)
-    groups = {name: members[1] for name, members in found.cell_sets.items()}
-    tag = np.zeros(len(lines), dtype=int)
-    for number, members in enumerate(groups.values(), start=1):
-        tag[members] = number
-    none, cells = np.zeros(len(triangles), dtype=int), found.cells
-    physical = {f"gmsh:{kind}": [none + 9, tag] for kind in ("physical", "geometrical")}
-    names = {name: np.array([number, 1]) for number, name in enumerate(groups, start=1)}
-    msh = meshio.Mesh(found.points, cells, cell_data=physical, field_data=names)
-    med = meshio.Mesh(found.points[:, :2], cells, cell_data={"cell_tags": [none, -tag]})
-    med.cell_tags = {-number: [name] for number, name in enumerate(groups, start=1)}
-    member = {name: [none, tag == number] for number, name in enumerate(groups, start=1)}
-    vtu = meshio.Mesh(found.points, cells, cell_data={k: [a, b.astype(int)] for k, (a, b) in member.items()})
-    meshio.write(folder / "s.msh", msh, file_format="gmsh22", binary=True)
-    meshio.write(folder / "s.med", med)
-    meshio.write(folder / "s.vtu", vtu)
-    return {".inp": SPECIMEN} | {suffix: folder / f"s{suffix}" for suffix in (".msh", ".med", ".vtu")}
-
-
-@pytest.fixture(scope="module")
-def results(formats):
-    return {suffix: fem(path) for suffix, path in formats.items()}
+def result():
+    """Of the specimen as it is; all formats give the same mesh (tests/meshes/test_read.py)."""
+    return fem(SPECIMEN)
 
 
 @pytest.mark.slow
-def test_all_formats_give_the_same_result(results):
-    """To the last bit."""
-    first, *others = results.values()
-    for other in others:
-        assert (other.a, other.m, other.n, other.p0) == (first.a, first.m, first.n, first.p0)
-        assert np.array_equal(other.traction.q2, first.traction.q2)
-    assert first.certificate["kkt"] < 1e-8
-    assert first.settings["meshes"] == "of the size of the given one"
-
-
-@pytest.mark.slow
-def test_the_result_is_that_of_the_arrays(found, results):
-    """The same without any file: the mesh's arrays, laid where they belong by hand."""
-    chosen = scene(SPECIMEN)
-    problem = scaled(chosen, plan(chosen))
-    triangles, lines = (block.data for block in found.cells)
-    names = {name: lines[members[1]] for name, members in found.cell_sets.items()}
-    mesh = Mesh(found.points[:, :2] * 1e-3 / chosen.length, triangles, names)
-    mesh = Mesh(mesh.points, counter_clockwise(mesh), names)
-    # on one thread, as methods are: which nodes bear next to nothing is up to rounding, and moves the fitted ends
-    found = one_thread(uniform)(problem, None, 16.0, Clock()).solution
-    direct = one_thread(solve_on_meshes)([mesh, found.bodies[1].mesh], problem, 16.0, Clock())
-    assert direct.half_width * chosen.length == pytest.approx(results[".inp"].a, rel=1e-10)
-    assert direct.zone_ends == pytest.approx(found.zone_ends, abs=1e-10)
-
-
-def counter_clockwise(mesh):
-    a, b, c = (mesh.points[mesh.triangles[:, corner]] for corner in range(3))
-    turned = np.linalg.det(np.stack([b - a, c - a], axis=1)) < 0
-    return np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
-
-
-@pytest.mark.slow
-def test_the_result_is_that_of_the_block(results):
+def test_the_result_is_that_of_the_block(result):
     """Another mesh of the same body, refined to 1e-3 a: off by no more than a quarter of the given elements, whose size
     is 0.1 a: that much ends of zones are off that lie anywhere in an element."""
     lower = f"bodies.lower={{width=40e-3, height=5e-3, {LOWER.partition(', ')[2]}}}"
     chosen = load_scene(SCENE, [lower, PAD, "load.cycles=2", "fem.accuracy=1e-3"])
-    block, given = solve(chosen, plan(chosen)), results[".inp"]
-    assert (given.a, given.m, given.n) == pytest.approx((block.a, block.m, block.n), abs=2.5e-2 * block.a)
+    block = solve(chosen, plan(chosen))
+    assert result.certificate["kkt"] < 1e-8
+    assert result.settings["meshes"] == "of the size of the given one"
+    assert (result.a, result.m, result.n) == pytest.approx((block.a, block.m, block.n), abs=2.5e-2 * block.a)
 
 
 def test_both_bodies_given(found, tmp_path):

@@ -19,6 +19,17 @@ SCENE = {
 }  # fmt: skip
 
 
+MOVED = {"load.Q": [0.0, 0.0], "load.displacement": [0.0, 1e-6]}
+T, SIGMA = 3e-3, np.array(SCENE["load"]["sigma"])
+_NODES, _WEIGHTS = (each * T / 2 for each in np.polynomial.legendre.leggauss(20))
+
+
+def borne(found, x):
+    """int sigma_xx dy over the specimen's section at ``x``, at load points 1 and 2."""
+    y = _NODES - T / 2
+    return found.stress_at(np.full_like(y, x), y)[:2, 0] @ _WEIGHTS
+
+
 def solved(changes=None, method="fem", **asked):
     return run(parse_scene(SCENE).replace(changes or {}), method, **asked)[method]
 
@@ -40,16 +51,10 @@ def test_the_right_grip_is_the_mirror_image_of_the_left_one():
 @pytest.mark.slow
 def test_sections_bear_their_shares():
     """int sigma_xx dy over sections of the specimen on both sides of the contact."""
-    share, t = 0.3, 3e-3
+    share = 0.3
     found = solved(grip(share) | {"fem.size": 0.2}, subsurface=True)
-    y = -t / 2 * (1 + np.polynomial.legendre.leggauss(20)[0])
-    weights = np.polynomial.legendre.leggauss(20)[1] * t / 2
     for x, carried in ((-7e-3, -(1 - share)), (7e-3, share)):
-        stress = found.stress_at(np.full_like(y, x), y)
-        borne = np.array([weights @ stress[point, 0] for point in (0, 1)])
-        assert borne == pytest.approx(
-            np.array(SCENE["load"]["sigma"]) * t + carried * np.array([-20e3, 20e3]), rel=2e-3
-        )
+        assert borne(found, x) == pytest.approx(SIGMA * T + carried * np.array([-20e3, 20e3]), rel=2e-3)
 
 
 @pytest.mark.slow
@@ -67,12 +72,8 @@ def test_equivalent_half_planes_know_both_grips(share):
 @pytest.mark.slow
 def test_a_plate_on_the_right_bears_what_the_section_beside_it_bears():
     """The force is found by reciprocity; stresses on a section between contact and plate have the same resultant."""
-    t, found = 3e-3, solved(grip("stiffness") | {"fem.size": 0.2}, subsurface=True)
-    y = -t / 2 * (1 + np.polynomial.legendre.leggauss(20)[0])
-    weights = np.polynomial.legendre.leggauss(20)[1] * t / 2
-    stress = found.stress_at(np.full_like(y, 7e-3), y)
-    borne = np.array([weights @ stress[point, 0] for point in (0, 1)])
-    assert borne - np.array(SCENE["load"]["sigma"]) * t == pytest.approx(found.right_grip, abs=2e-3 * 20e3)
+    found = solved(grip("stiffness") | {"fem.size": 0.2}, subsurface=True)
+    assert borne(found, 7e-3) - SIGMA * T == pytest.approx(found.right_grip, abs=2e-3 * 20e3)
 
 
 def test_the_share_of_a_plate_on_the_right_follows_from_the_stiffness():
@@ -96,11 +97,9 @@ def test_a_plate_on_the_right_holds_what_it_pulls():
 
 
 def test_a_run_goes_on_from_a_state(tmp_path):
-    first = solved(grip(0.5) | {"fem.size": 0.3})
+    first = solved(halves := grip(0.5) | {"fem.size": 0.3})
     first.state.save(tmp_path / "state.npz")
-    again = run(
-        parse_scene(SCENE).replace(grip(0.5) | {"fem.size": 0.3}), "fem", start=load_state(tmp_path / "state.npz")
-    )["fem"]
+    again = solved(halves, start=load_state(tmp_path / "state.npz"))
     assert (again.m, again.n) == pytest.approx((first.m, first.n), abs=1e-3 * first.a)
 
 
@@ -109,16 +108,10 @@ def test_a_run_goes_on_from_a_state(tmp_path):
     [
         (grip(1.2), r"bodies.lower.right_grip = 1.2: must be <= 1"),
         (grip(0.2) | {"bodies.lower.pulled": False}, r"right_grip = 0.2: must be given only with pulled = true"),
-        (
-            grip(0.2) | {"load.Q": [0.0, 0.0], "load.displacement": [0.0, 1e-6]},
-            r"right_grip = 0.2: must be 'stiffness' or left out with load.displacement",
-        ),
+        (grip(0.2) | MOVED, r"right_grip = 0.2: must be 'stiffness' or left out with load.displacement"),
         (grip("glued"), r"bodies.lower.right_grip = 'glued': must be a number or 'stiffness'"),
         (grip(True), r"bodies.lower.right_grip = true: must be a number or 'stiffness', not true or false"),
-        (
-            grip("stiffness") | {"bodies.lower.pulled": False},
-            r"bodies.lower.right_grip = 'stiffness': must be given only with pulled = true$",
-        ),
+        (grip("stiffness") | {"bodies.lower.pulled": False}, r"'stiffness': must be given only with pulled = true$"),
     ],
 )
 def test_bad_input_is_one_line(changes, told):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg as la
+from plain import plain
 
 import partialslip
 from partialslip.result import Clock, Traction, TractionAt
@@ -98,21 +99,11 @@ def block_on_specimen(accuracy):
     """Fem on a block of nu = 0.499 with round corners, on a pulled specimen; flat over 0.6 a, m at 0.8 a."""
     body = {"kind": "block", "width": 10.279881985186482e-3, "height": 4.770872679343002e-3}
     lower = {"width": 40e-3, "height": 10.946134054207014e-3, "support": "roller", "pulled": True}
-    scene = partialslip.parse_scene(
-        {
-            "name": "block-on-specimen",
-            "material": {"E": 70e9, "nu": 0.499},
-            "friction": {"f": 0.15020566282588918},
-            "profile": {"kind": "flat-rounded", "R": 0.02, "b": 0.5962975794164327e-3},
-            "load": {
-                "P": 528064.1805819856,
-                "Q": [-57939.46142584731, 57939.46142584731],
-                "sigma": [-8125764.372035065, 8125764.372035065],
-            },
-            "bodies": {"upper": body, "lower": lower},
-            "fem": {"accuracy": accuracy},
-        }
-    )
+    load = {"P": 528064.1805819856, "Q": [-57939.46142584731, 57939.46142584731]}
+    load |= {"sigma": [-8125764.372035065, 8125764.372035065]}
+    profile = {"kind": "flat-rounded", "R": 0.02, "b": 0.5962975794164327e-3}
+    more = {"bodies": {"upper": body, "lower": lower}, "fem": {"accuracy": accuracy}}
+    scene = plain(load, 0.15020566282588918, (70e9, 0.499), profile, **more)
     return partialslip.run(scene, ["fem"]).results["fem"]
 
 

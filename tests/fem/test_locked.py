@@ -4,11 +4,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import reversed_loads
+from plain import plain
+from spying import spied
 
 import partialslip
 from partialslip.friction import contact_line
 from partialslip.friction.zone_ends import StickInterval
-from partialslip.scene.reading import parse_scene
 from partialslip_fem import estimate, grading, locked
 from partialslip_fem.locked import locked_in
 
@@ -16,9 +18,7 @@ from partialslip_fem.locked import locked_in
 def drifting(Qf=0.75, sf=13.8, poisson=0.3):
     """Hertz contact under reversed loads, with Poisson's ratio ``poisson``. By default the zone drifts by more than its
     width. It takes back the fine elements at its right end in one jump."""
-    scene = partialslip.load_scene("hertz-large-tension", ["fem.accuracy=1e-3", f"material.nu={poisson}"])
-    Q, sigma = Qf * scene.friction.f * scene.P, sf / 2 * scene.friction.f * scene.load.p0
-    return scene.replace(load={"Q": [-Q, Q], "sigma": [-sigma, sigma]})
+    return reversed_loads.scene(Qf, sf, "fem.accuracy=1e-3").replace({"material.nu": poisson})
 
 
 def ratios(scene, exact):
@@ -131,21 +131,9 @@ def test_a_hop_before_a_jump_hides_nothing_of_the_time_off_the_way(way):
 def test_how_long_an_end_that_jumped_was_off_its_way_is_seen(monkeypatch):
     """Under mean tension the left end hops over two nodes, and soon jumps over many. Deliberate fault: an end that has
     just hopped is taken to be on its way, which leaves out a third of the estimate."""
-    scene = parse_scene(
-        {
-            "name": "hops",
-            "material": {"E": 70e9, "nu": 0.4},
-            "friction": {"f": 0.6243},
-            "profile": {"kind": "flat-rounded", "R": 0.02, "b": 0.00077701467},
-            "load": {
-                "P": 199760.283,
-                "Q": [87407.4504, -87407.4504],
-                "sigma": [446615949.0, -562921986.0],
-                "cycles": 6,
-            },
-            "fem": {"accuracy": 4e-4},
-        }
-    )
+    load = {"P": 199760.283, "Q": [87407.4504, -87407.4504], "sigma": [446615949.0, -562921986.0], "cycles": 6}
+    flat = {"kind": "flat-rounded", "R": 0.02, "b": 0.00077701467}
+    scene = plain(load, 0.6243, (70e9, 0.4), flat, fem={"accuracy": 4e-4})
     exact = partialslip.run(scene, ["exact"]).results["exact"]
     monkeypatch.setattr(grading, "_AT_BENDS", 0.0)  # on meshes that are fine at the ends of the flat, the end hops
     found, known = ratios(scene, exact)
@@ -174,10 +162,9 @@ def test_an_end_that_came_back_to_where_it_turned_round_is_seen(monkeypatch):
 
 
 def test_where_no_node_of_the_stick_zone_slipped_nothing_is_locked_in(monkeypatch):
-    pairs, true = [], estimate.smooth_errors
-    monkeypatch.setattr(estimate, "smooth_errors", lambda *given: pairs.append(given[:2]) or true(*given))
+    pairs = spied(monkeypatch, estimate, "smooth_errors")
     partialslip.run(partialslip.load_scene("hertz-large-tension", ["fem.accuracy=1e-3"]), ["fem"])
-    assert (locked_in(*pairs[-1], np.ones(2)) == 0).all()
+    assert (locked_in(*pairs[-1][:2], np.ones(2)) == 0).all()
 
 
 @pytest.mark.parametrize("method", ["march", "fem"])

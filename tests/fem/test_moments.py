@@ -6,10 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from msgspec import to_builtins
+from plain import plain
 
-import partialslip
 from partialslip import parse_scene, run
-from partialslip.friction import normal
 from partialslip_fem import goals
 from partialslip_fem import method as fem_method
 
@@ -23,14 +22,8 @@ def scene(kind="table", tilt="free", **load):
         "flat": {"kind": "flat-rounded", "R": 0.01, "b": 1e-3},
         "hertz": {"kind": "hertz", "R": 0.01},
     }
-    return parse_scene({
-        "name": "turned",
-        "material": {"E": 72.1e9, "nu": 0.33},
-        "friction": {"f": 0.3},
-        "profile": profiles[kind],
-        "load": {"P": 1e5, "Q": [-1e4, 1e4], "sigma": [-3e7, 3e7], **load},
-        "fem": {"accuracy": 1e-3},
-    })  # fmt: skip
+    load = {"P": 1e5, "Q": [-1e4, 1e4], "sigma": [-3e7, 3e7], **load}
+    return plain(load, profile=profiles[kind], fem={"accuracy": 1e-3})
 
 
 @pytest.mark.parametrize("given", [
@@ -63,19 +56,6 @@ def test_mirrored_bodies_have_mirrored_results():
     assert (one.m, one.n) == pytest.approx((other.n, other.m), abs=1e-4 * one.a)
 
 
-def test_constant_contacts_do_no_work_for_a_moment(monkeypatch):
-    """An even contact is pressed by one quadratic programme; a turned one needs a few."""
-    solved = []
-    true = normal.solve_bounded
-    monkeypatch.setattr(normal, "solve_bounded", lambda *args: (solved.append(1), true(*args))[1])
-    fixed = partialslip.load_scene("hertz-shear", ["fem.size=0.1"])
-    run(fixed, ["fem"])
-    even, solved[:] = len(solved), []
-    run(partialslip.load_scene("hertz-shear", ["fem.size=0.1", "load.e=1e-5"]), ["fem"])
-    assert even == 2  # the first mesh and the uniform one
-    assert even < len(solved) < 10 * even
-
-
 @pytest.mark.fault
 def test_bodies_that_do_not_turn_would_be_seen(monkeypatch):
     scaled = fem_method.scaled
@@ -88,15 +68,8 @@ def test_bodies_that_do_not_turn_would_be_seen(monkeypatch):
 @pytest.mark.parametrize("M", [(1000.0, -1000.0), (0.0, 300.0)])
 def test_contacts_that_a_moment_moves_by_many_half_widths(M):
     """The blocks reach beyond the whole way of the contact, not only beyond 16 of its half-widths."""
-    given = parse_scene({
-        "name": "moved",
-        "material": {"E": 70e9, "nu": 0.3},
-        "friction": {"f": 0.5},
-        "profile": {"kind": "flat-rounded", "R": 0.01, "b": 2e-3},
-        "load": {"P": 1e5, "M": M},
-        "fem": {"accuracy": 1e-2},
-        "effects": {"friction": False},
-    })  # fmt: skip
+    flat, how = {"kind": "flat-rounded", "R": 0.01, "b": 2e-3}, {"fem": {"accuracy": 1e-2}}
+    given = plain({"P": 1e5, "M": M}, 0.5, (70e9, 0.3), flat, effects={"friction": False}, **how)
     fem = run(given, ["fem"]).results["fem"]
     # far from the flat the bodies turn until the contact is that of a cylinder, about the line of action of P
     a = np.sqrt(2 / np.pi * given.material.A * 0.01 * 1e5)

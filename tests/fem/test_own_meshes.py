@@ -22,11 +22,11 @@ def written(path, along, names=("back", "contact", "left", "right")):
     meshio.write(path, meshio.Mesh(np.column_stack([mesh.points, 0 * mesh.points[:, 0]]), cells, cell_sets=sets))
 
 
-def solved(path, *overrides):
+def solved(path, *overrides, support="clamped"):
     scene = load_scene(
         "fretting-aluminium",
         ["load.P=135750", "load.Q=[-38750, 38750]", "load.sigma=[0, 0]", "load.cycles=1", *overrides,
-         f"bodies={{lower={{mesh='{path}', unit={MM}}}}}"],
+         f"bodies={{lower={{mesh='{path}', unit={MM}, support='{support}'}}}}"],
     )  # fmt: skip
     return solve(scene, plan(scene, subsurface=True))
 
@@ -54,9 +54,4 @@ def test_a_clamped_mesh_needs_no_sides(tmp_path):
 def test_supports_that_hold_the_sides_need_them(tmp_path):
     written(tmp_path / "clamped.inp", 0.05, ("back", "contact"))
     with pytest.raises(ValueError, match="must have a group 'left'"):
-        solved_with(tmp_path / "clamped.inp", "roller")
-
-
-def solved_with(path, support):
-    scene = load_scene("fretting-aluminium", [f"bodies={{lower={{mesh='{path}', unit={MM}, support='{support}'}}}}"])
-    return solve(scene, plan(scene, subsurface=True))
+        solved(tmp_path / "clamped.inp", support="roller")

@@ -30,6 +30,9 @@ CLAMPED = {"bodies.upper.support": "clamped", "bodies.upper.pivot_height": None}
 PAD = {"bodies.upper.kind": "pad"}
 FLAT = {"profile": {"kind": "flat-rounded", "R": 0.01, "b": 1e-4}}
 FAR = {"bodies.upper": {"width": 16e-3, "height": 16e-3}, "bodies.lower": None}  # large beside the contact
+TWO_PIVOTS = {"bodies.lower.support": "pivot", "bodies.lower.pivot_height": 0.0}
+FIXED = {"profile": {"kind": "tabulated", "x": [-1e-3, 0.0, 1e-3], "gap": [1e-5, 0.0, 2e-5], "tilt": "fixed"}}
+HIGH, WIDE = {"bodies.upper.pivot_height": 0.5}, {"bodies.upper.width": 0.4, "bodies.lower.width": 0.4}
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -183,22 +186,13 @@ def test_the_sketch_shows_the_pin():
         ({"bodies.upper.pivot_height": None}, "bodies.upper.pivot_height: missing; must be given with support 'pivot'"),
         ({"bodies.upper.support": "clamped"}, r"pivot_height = 0.0003: must be given only with support 'pivot'"),
         ({"bodies.upper.pivot_height": -1e-3}, "bodies.upper.pivot_height = -0.001: must be >= 0"),
-        (
-            {"bodies.lower.support": "pivot", "bodies.lower.pivot_height": 0.0},
-            "bodies.lower.support = 'pivot': must be",
-        ),
+        (TWO_PIVOTS, "bodies.lower.support = 'pivot': must be"),
         ({"bodies.lower": {**TURNED_OVER["bodies.lower"], "pulled": True}, **CLAMPED}, "'sides', not 'pivot'"),
         (CLAMPED | {"load.M": 1.0}, "one must have support 'pivot'"),
         ({"load.Q": [0.0, 5e4]}, r"load.Q = \[0.0, 50000.0\]: must keep \|Q\| below f P at each load point on a body"),
-        (
-            {"profile": {"kind": "tabulated", "x": [-1e-3, 0.0, 1e-3], "gap": [1e-5, 0.0, 2e-5], "tilt": "fixed"}},
-            "bodies.upper.support = 'pivot': must not be given with profile.tilt = 'fixed'",
-        ),
-        ({"bodies.upper.pivot_height": 0.5}, "must be wider than the contact|must move the line of action"),
-        (
-            {"bodies.upper.pivot_height": 0.5, "bodies.upper.width": 0.4, "bodies.lower.width": 0.4},
-            r"load.Q, load.M, load.e, bodies.upper.pivot_height: must move the line of action of P by less than",
-        ),
+        (FIXED, "bodies.upper.support = 'pivot': must not be given with profile.tilt = 'fixed'"),
+        (HIGH, "must be wider than the contact|must move the line of action"),
+        (HIGH | WIDE, "load.Q, load.M, load.e, bodies.upper.pivot_height: must move the line of action of P by less"),
     ],
 )
 def test_bad_input_is_one_line(changes, told):

@@ -3,24 +3,19 @@
 import numpy as np
 import pytest
 from numpy.polynomial import Legendre, Polynomial
+from plain import plain
 
 import partialslip
 from partialslip.tools.bars import CERTIFICATE_BAR
 from partialslip_fem.mesh_solution import MeshSolution
 
-PAD = {
-    "name": "round-pad-on-a-pulled-specimen",
-    "units": "N-mm",
-    "material": {"E": 116e3, "nu": 0.32},
-    "profile": {"kind": "hertz", "R": 50.0},
-    "friction": {"f": 0.55},
-    "load": {"P": 300.0, "Q": [-90.0, 90.0], "sigma": [20.0, 200.0], "cycles": 4},
-    "bodies": {
+PAD = plain(
+    {"P": 300.0, "Q": [-90.0, 90.0], "sigma": [20.0, 200.0], "cycles": 4}, 0.55, (116e3, 0.32),
+    {"kind": "hertz", "R": 50.0}, units="N-mm", fem={"accuracy": 1e-5}, bodies={
         "upper": {"kind": "pad", "width": 10.0, "height": 10.0},
         "lower": {"width": 40.0, "height": 20.0, "support": "roller", "pulled": True},
     },
-    "fem": {"accuracy": 1e-5},
-}
+)  # fmt: skip
 SMALLEST = 5e-5  # in a: ends are known to 1e-5 a with elements of 3e-4 a, with a margin of 3 and neighbours
 
 
@@ -30,7 +25,7 @@ def solved(scene):
 
 @pytest.mark.slow
 def test_kinks_of_q_do_not_shrink_the_elements_at_the_ends():
-    found = solved(partialslip.parse_scene(PAD))
+    found = solved(PAD)
     x, p = found.traction.x, found.traction.p
     inside = np.abs(x) < 0.9 * found.a
     assert np.diff(found.traction.cells).min() > SMALLEST * found.a

@@ -9,6 +9,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from plain import plain
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkm1
@@ -30,16 +31,7 @@ BETA = 1 / 7
 
 def scene(f, **more):
     steel = {"E": 70e9, "nu": 0.3, "upper": {"E": 210e9, "nu": 0.3}}
-    return partialslip.parse_scene(
-        {
-            "name": "steel-on-aluminium",
-            "material": steel,
-            "profile": {"kind": "hertz", "R": 0.05},
-            "friction": {"f": f},
-            "load": {"P": 1e6, **more},
-            "fem": {"accuracy": 1e-3},
-        }
-    )
+    return plain({"P": 1e6, **more}, f, steel, {"kind": "hertz", "R": 0.05}, fem={"accuracy": 1e-3})
 
 
 def spence(f):
@@ -101,13 +93,21 @@ def test_one_step_of_pressing_forgets_what_stuck_early(monkeypatch, pressed):
     assert abs(wrong.a - pressed(0.3).a) > 2e-3 * wrong.a
 
 
+X = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
+_EDGES = np.concatenate([[-1.0], np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2]), [1.0]])
+WEIGHTS = np.diff(_EDGES)[: len(X)]
+
+
+def punch(sheared, **more):
+    """A flat punch on nodes ``X``: p = 1/(pi sqrt(1 - t^2)), and, if it is ``sheared``, q = t/sqrt(1 - t^2)."""
+    forces = np.diff(np.arcsin(_EDGES)) / np.pi, -sheared * np.diff(np.sqrt(1 - _EDGES**2))
+    left = 0.5 + np.arcsin(X[3:-3]) / np.pi, -sheared * np.sqrt(1 - X[3:-3] ** 2)
+    return FlatPunch((-1.0, 1.0), X, WEIGHTS, forces, X[3:-3], left, **more)
+
+
 def test_punches_add_up_to_a_parabola():
     """The closed form: flat punches of all half-widths, 1/(pi sqrt(1 - x^2)), make 2/pi sqrt(1 - x^2)."""
-    x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
-    edges = np.concatenate([[-1.0], np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2]), [1.0]])
-    weights, normal = np.diff(edges)[: len(x)], np.diff(np.arcsin(edges)) / np.pi
-    left = 0.5 + np.arcsin(x[3:-3]) / np.pi
-    stages = FlatPunch((-1.0, 1.0), x, weights, (normal, 0 * x), x[3:-3], (left, 0 * left))
+    x, weights, stages = X, WEIGHTS, punch(sheared=0)
     for share, nodes, error in ((1.0, 0.99, 2e-4), (0.9, 0.88, 1e-3)):
         p, q = stages.stage(1.0, share)
         expected = share * 2 / np.pi * np.sqrt(np.maximum(1 - (x / share) ** 2, 0.0))
@@ -120,15 +120,7 @@ def test_punches_add_up_to_a_parabola():
 def test_punches_of_like_bodies_of_a_size_add_up():
     """The closed form: shear t/sqrt(1 - t^2) under flat punches, which grows like their half-width, makes
     2 x sqrt(1 - x^2); after a part of the half-width, the square of that part times this."""
-    x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
-    edges = np.concatenate([[-1.0], np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2]), [1.0]])
-    weights, normal, shear = (
-        np.diff(edges)[: len(x)],
-        np.diff(np.arcsin(edges)) / np.pi,
-        -np.diff(np.sqrt(1 - edges**2)),
-    )
-    left = 0.5 + np.arcsin(x[3:-3]) / np.pi, -np.sqrt(1 - x[3:-3] ** 2)
-    stages = FlatPunch((-1.0, 1.0), x, weights, (normal, shear), x[3:-3], left, sized=True)
+    x, weights, stages = X, WEIGHTS, punch(sheared=1, sized=True)
     for share, nodes, error in ((1.0, 0.99, 1e-2), (0.9, 0.88, 1e-2)):  # of 201 nodes
         _, q = stages.stage(1.0, share)
         root = np.sqrt(np.maximum(1 - (x / share) ** 2, 0.0))
@@ -141,15 +133,10 @@ def test_punches_of_like_bodies_of_a_size_add_up():
 def test_punches_add_up_to_a_flat_rounded_contact(flat):
     """The pressure is that of the exact method, also after a part of the half-width; shear t/sqrt(1 - t^2) under flat
     punches, which grows like their half-width, is integrated numerically."""
-    x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
-    edges = np.concatenate([[-1.0], np.sin(np.linspace(-np.pi / 2, np.pi / 2, 402)[1:-1:2]), [1.0]])
-    weights, normal = np.diff(edges)[: len(x)], np.diff(np.arcsin(edges)) / np.pi
-    forces = normal, -np.diff(np.sqrt(1 - edges**2))
-    left = 0.5 + np.arcsin(x[3:-3]) / np.pi, -np.sqrt(1 - x[3:-3] ** 2)
     gap = EvenGap(np.array([flat]), np.ones(1))
-    punch = FlatPunch((-1.0, 1.0), x, weights, forces, x[3:-3], left, sized=True, gap=gap)
+    x, weights, stages = X, WEIGHTS, punch(sheared=1, sized=True, gap=gap)
     for share in (1.0, 0.95):
-        p, q = (each / weights for each in punch.stage(1.0, share))
+        p, q = (each / weights for each in stages.stage(1.0, share))
         inside = np.abs(x) < 0.98 * share
         exact = Flats(flat / share).pressure(x / share)
         assert p[inside] == pytest.approx(exact[inside] * p[100] / exact[100], rel=1e-3)
@@ -160,7 +147,7 @@ def test_punches_add_up_to_a_flat_rounded_contact(flat):
             for t in x[at].tolist()
         ]
         assert q[at] == pytest.approx(np.array(expected) / gap.force(1.0), rel=5e-3, abs=1e-2)  # of 201 nodes
-    assert not np.any(punch.stage(1.0, flat / 2))  # before the corners bear
+    assert not np.any(stages.stage(1.0, flat / 2))  # before the corners bear
 
 
 def test_a_stage_bears_its_load_and_no_shear():
@@ -312,20 +299,12 @@ def test_unlike_half_planes_are_pressed_under_a_flat_with_rounded_corners():
     assert off < fem.estimate["q1"] + march.estimate["q1"] < 0.02
 
 
-PAD = partialslip.parse_scene(
-    {
-        "name": "pressed-pad",
-        "material": {"E": 72.1e9, "nu": 0.33},
-        "profile": {"kind": "hertz", "R": 0.01},
-        "friction": {"f": 0.3},
-        "load": {"P": 135750.0},
-        "bodies": {
-            "upper": {"kind": "pad", "width": 10e-3, "height": 5e-3, "support": "sides"},
-            "lower": {"kind": "block", "width": 40e-3, "height": 4e-3, "support": "roller"},
-        },
-        "fem": {"accuracy": 1e-3},
-    }
-)
+PAD = plain(
+    {"P": 135750.0}, fem={"accuracy": 1e-3}, bodies={
+        "upper": {"kind": "pad", "width": 10e-3, "height": 5e-3, "support": "sides"},
+        "lower": {"kind": "block", "width": 40e-3, "height": 4e-3, "support": "roller"},
+    },
+)  # fmt: skip
 PARTS = np.array([0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9])
 
 
@@ -410,15 +389,9 @@ def test_a_pad_that_slips_while_it_is_pressed_goes_step_by_step():
 def test_a_cycle_after_a_flat_was_pressed_agrees_with_the_march():
     """Q moves the stick zone into the shear that pressing locked in, whose small errors it enlarges tenfold."""
     unlike = {"upper": {"E": 210e9, "nu": 0.3}, "lower": {"E": 48e9, "nu": 0.1}}
-    data = {
-        "name": "flat-on-an-unlike-body",
-        "material": unlike,
-        "profile": {"kind": "flat-rounded", "R": 0.05, "b": 5e-4},
-        "friction": {"f": 0.67},
-        "load": {"P": 2.45e5, "Q": [-6.6e4, 6.6e4]},
-        "fem": {"accuracy": 1e-3},
-    }
-    found = partialslip.run(partialslip.parse_scene(data), ["march", "fem"]).results
+    flat = {"kind": "flat-rounded", "R": 0.05, "b": 5e-4}
+    of = plain({"P": 2.45e5, "Q": [-6.6e4, 6.6e4]}, 0.67, unlike, flat, fem={"accuracy": 1e-3})
+    found = partialslip.run(of, ["march", "fem"]).results
     off = norm_errors(found["fem"].traction, found["march"].traction, 0.67, ("q1", "q2"))
     for key, error in off.items():
         assert error < found["fem"].estimate[key] + found["march"].estimate[key] < 6e-3

@@ -132,22 +132,11 @@ def rig_of(*overrides):
 
 def test_rigs_of_larger_bodies_are_larger():
     """Two blocks 100 times as large reach 100 times as far; their terms have no dimension."""
-    small, large = (
-        rig_of(
-            f"bodies.upper={{width={8e-3 * times}, height={5e-3 * times}}}",
-            f"bodies.lower={{width={times}, height={times}}}",
-        )
-        for times in (1, 100)
-    )
+    bodies = "bodies.upper={{width={}e-3, height={}e-3}}", "bodies.lower={{width={2}, height={2}}}"
+    small, large = (rig_of(*(body.format(8 * times, 5 * times, times) for body in bodies)) for times in (1, 100))
     assert large.reach == pytest.approx(100 * small.reach)
     for one, other in zip(small.terms, large.terms, strict=True):
         assert one == pytest.approx(other, abs=1e-9)
-
-
-def test_mirror_images_do_not_couple():
-    """Not by much: gmsh's meshes of both are one."""
-    block = "{width=8e-3, height=4e-3}"
-    assert not rig_of(f"bodies.upper={block}", f"bodies.lower={block}").terms.xy.any()
 
 
 @pytest.mark.fault
@@ -167,9 +156,8 @@ def test_bodies_that_are_their_own_mirror_images_turn_nothing():
     assert not terms.xy[even].any()
     assert not terms.xx[~even].any()
     assert not terms.yy[~even].any()
-    assert (
-        np.abs(rig_of("bodies.lower={width=16e-3, height=9e-3, support='roller', pulled=true}").terms.xx[1, 0]) > 0.01
-    )
+    pulled = rig_of("bodies.lower={width=16e-3, height=9e-3, support='roller', pulled=true}")
+    assert np.abs(pulled.terms.xx[1, 0]) > 0.01
 
 
 def test_the_lower_and_the_upper_body_couple_the_other_way():

@@ -180,11 +180,6 @@ def test_friction_acts_while_the_bodies_are_pressed():
     assert np.sqrt(np.mean(skew**2)) < 1e-2 * result.p0
 
 
-def test_contact_wider_than_a_body_is_refused():
-    with pytest.raises(partialslip.InputError, match=r"bodies.upper.width: must be wider than the contact"):
-        fem("bodies.upper.width=2e-3", "bodies.upper.height=4e-3")
-
-
 def test_wide_blocks_are_half_planes():
     """Finite bodies of 400 a: what is left of the size is (a/W)^2 and less."""
     size = ("width=0.4", "height=0.2")

@@ -1,23 +1,16 @@
 """Load steps of coupled bodies: their error is estimated from other steps."""
 
 import pytest
+from plain import plain
 
 import partialslip
 from partialslip.friction import step_errors
 
 
 def solved(steps, **more):
-    scene = partialslip.parse_scene(
-        {
-            "name": "steel-on-aluminium",
-            "material": {"E": 70e9, "nu": 0.1, "upper": {"E": 200e9, "nu": 0.3}},
-            "profile": {"kind": "hertz", "R": 0.01},
-            "friction": {"f": 0.25},
-            "load": {"P": 2e4, "Q": [-2500, 2500], "steps": steps, "cycles": 1, **more},
-            "fem": {"accuracy": 1e-2},
-        }
-    )
-    return partialslip.run(scene, "fem")["fem"]
+    load = {"P": 2e4, "Q": [-2500, 2500], "steps": steps, "cycles": 1, **more}
+    steel_on_aluminium = {"E": 70e9, "nu": 0.1, "upper": {"E": 200e9, "nu": 0.3}}
+    return partialslip.run(plain(load, 0.25, steel_on_aluminium, fem={"accuracy": 1e-2}), "fem")["fem"]
 
 
 def told(result):

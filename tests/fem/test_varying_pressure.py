@@ -1,18 +1,15 @@
 """Finite elements under varying P and M: against the closed form, and what bodies of other kinds do."""
 
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-
-from partialslip import load_scene, parse_scene, run
-from partialslip.march import similar as marching
-from partialslip.tools.errors import InputError
-
-sys.path.append(str(Path(__file__).parent.parent / "halfplane"))
+from plain import plain
 from varying_scenes import varying
+
+from partialslip import load_scene, run
+from partialslip.march import driver
+from partialslip.tools.errors import InputError
 
 
 @pytest.mark.parametrize(
@@ -78,7 +75,7 @@ def test_contacts_that_have_nothing_in_common():
 def test_no_stick_zone_without_a_point_in_contact_at_both_load_points(method, monkeypatch):
     """A punch that rolls from one edge to the other, in which no point sticks all the time. The moment of a single node
     does not depend on the angle; taken for a slope, its rounding error once turned the punch off the other body."""
-    monkeypatch.setattr(marching, "_MESHES", marching._MESHES[:2])
+    monkeypatch.setattr(driver, "MESHES", driver.MESHES[:4])
     scene = load_scene(
         "flat-rounded", ["load.M=[2e3, -2e3]", "fem.accuracy=1e-1", "load.sigma=[0, 0]", "load.cycles=1"]
     )
@@ -93,16 +90,8 @@ def test_no_stick_zone_without_a_point_in_contact_at_both_load_points(method, mo
 def test_what_does_not_slip_does_not_ratchet(method):
     """No end slips; relative to the largest slip, which is rounding, so is the slip of a whole cycle: 1."""
     load = {"P": [12996.94968303615, 8319.07592189774], "Q": [1394.5783132456947, 155.94873652021462]}
-    scene = parse_scene(
-        {
-            "name": "no-slip",
-            "material": {"E": 32397301897.722683, "nu": 0.3},
-            "profile": {"kind": "hertz", "R": 0.03},
-            "friction": {"f": 0.30086574442786695},
-            "load": load,
-            "fem": {"accuracy": 1e-3},
-        }
-    )
+    f, material, profile = 0.30086574442786695, (32397301897.722683, 0.3), {"kind": "hertz", "R": 0.03}
+    scene = plain(load, f, material, profile, fem={"accuracy": 1e-3})
     results = run(scene, ["exact", method])
     assert results["exact"].regime == "no slip"
     assert results[method].regime == "no slip"

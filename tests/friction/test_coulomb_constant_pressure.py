@@ -1,6 +1,7 @@
 """Paths of straight legs at constant pressure: in one step where that is enough, otherwise event by event."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -67,16 +68,28 @@ def test_legs_in_one_step_are_those_that_are_gradual(shape):
     assert 20 < sum(taken) < 80
 
 
+@cache
+def drifted(Qf=0.55, sf=7.0):
+    """The exact steady state, cells of 1e-3 a at the ends of its zone, their problem, and the march on them."""
+    exact = steady(Loads(sf, np.pi * Qf), HertzShape()).last
+    vertices, *problem = cells(points=(-1, *exact.zone, 1), size=1e-3, growth=0.07)
+    return exact, vertices, problem, march(*problem, 1.0, loads(Qf, sf))
+
+
+def read(vertices, history, *known):
+    """The stick zone of a march; what is ``known`` of its nodes is when they slipped or stuck again, and so on."""
+    x = (vertices[1:] + vertices[:-1]) / 2
+    known = known or (history.changed,)
+    return read_stick_zone(x, history.bound, history.change, vertices, lambda each: each, *known)
+
+
 @pytest.mark.parametrize(("Qf", "sf"), DRIFTS)
 def test_drifting_zone(Qf, sf):
     """Ends, and q, of the exact steady state, in cells of 1e-3 a at the ends; one step is off by many times as much."""
-    exact = steady(Loads(sf, np.pi * Qf), HertzShape()).last
-    vertices, *problem = cells(points=(-1, *exact.zone, 1), size=1e-3, growth=0.07)
-    x = problem[1][0]
-    history = march(*problem, 1.0, loads(Qf, sf))
+    exact, vertices, problem, history = drifted(Qf, sf)
+    x, zone = problem[1][0], read(vertices, history)
     assert history.turns
     assert history.cycles > 1
-    zone = read_stick_zone(x, history.bound, history.change, vertices, lambda each: each, history.changed)
     assert zone.left == pytest.approx(exact.zone.left, abs=1e-4)
     assert zone.right == pytest.approx(exact.zone.right, abs=1e-4)
     q = history.change / 2 / np.diff(vertices) * np.pi / 2
@@ -85,21 +98,11 @@ def test_drifting_zone(Qf, sf):
     assert off < 2e-3
 
 
-def drifted(unsteady=None, Qf=0.55, sf=7.0):
-    """The exact left end, which drifts, and the zone in cells of 1e-3 a at the ends, without the ``unsteady`` room."""
-    exact = steady(Loads(sf, np.pi * Qf), HertzShape()).last
-    vertices, *problem = cells(points=(-1, *exact.zone, 1), size=1e-3, growth=0.07)
-    history = march(*problem, 1.0, loads(Qf, sf))
-    bound, change = history.bound, history.change
-    return exact.zone.left, read_stick_zone(
-        problem[1][0], bound, change, vertices, lambda each: each, history.changed, unsteady and unsteady * bound
-    )
-
-
 @pytest.mark.parametrize(("Qf", "sf"), DRIFTS)
 def test_drifting_ends_are_read_twice(Qf, sf):
     """From the room that q has left, and from the loads at which the nodes stuck again: both to a part of a cell."""
-    exact, zone = drifted(Qf=Qf, sf=sf)
+    exact, vertices, _, history = drifted(Qf, sf)
+    exact, zone = exact.zone.left, read(vertices, history)
     assert zone.moved == (True, False)
     assert zone.left == pytest.approx(exact, abs=2e-4)
     assert zone.caught[0] == pytest.approx(exact, abs=2e-4)
@@ -110,7 +113,8 @@ def test_drifting_ends_are_read_twice(Qf, sf):
 def test_room_of_a_drifting_end_taken_for_gone():
     """Deliberate fault: room that a node still has is taken for room that the next cycles take away. The end is read
     some cells inside; the loads at which the nodes stuck again tell."""
-    exact, zone = drifted(unsteady=1e-3)
+    exact, vertices, _, history = drifted()
+    exact, zone = exact.zone.left, read(vertices, history, history.changed, 1e-3 * history.bound)
     assert abs(zone.left - exact) > 1e-3
     assert abs(zone.left - zone.caught[0]) > 0.5 * abs(zone.left - exact)
 
@@ -120,9 +124,8 @@ def test_nodes_that_slip_up_to_the_load_point_have_no_room():
     """Nodes beyond the left end, which drifts, come to load point 2 with q at its bound, but miss the bound by little
     at load point 1: no further cycle would leave them that room. Deliberate fault: when nodes stuck again is not
     known."""
-    exact = steady(Loads(7.0, np.pi * 0.55), HertzShape()).last.zone
-    vertices, *problem = cells(points=(-1, exact.left, exact.right, 1), size=1e-3, growth=0.07)
-    history, x = march(*problem, 1.0, loads(0.55, 7.0)), problem[1][0]
+    found, vertices, problem, history = drifted()
+    exact, x = found.zone, problem[1][0]
     beyond = (x < exact.left) & (x > exact.left - 0.02)
     q1 = history.q1 * np.where(beyond, 1 - 1e-7, 1.0)
     points = [*history.points]
@@ -130,8 +133,7 @@ def test_nodes_that_slip_up_to_the_load_point_have_no_room():
     history = replace(history, q1=q1, points=points)
 
     def left(history):
-        known = history.lasting, history.unsteady, history.stuck
-        return read_stick_zone(x, history.bound, history.change, vertices, lambda each: each, *known).left
+        return read(vertices, history, history.lasting, history.unsteady, history.stuck).left
 
     assert left(history) == pytest.approx(exact.left, abs=2e-4)
     assert abs(left(replace(history, stuck=None)) - exact.left) > 5e-3
@@ -216,14 +218,6 @@ def test_half_a_cycle_begins_with_the_zone_known_from_elsewhere():
     assert warm.iterations == 1 < cold.iterations
 
 
-@pytest.mark.parametrize("others", [(0.72, 0.31), (-0.7, 0.3), (0.05, 0.0)])
-def test_other_loads_before_change_nothing(others):
-    """What was factored under other loads serves all."""
-    factored = Factored(C)
-    solved(along(*others, 4), factored)
-    close(solved(along(0.7, 0.3, 4), factored), solved(along(0.7, 0.3, 4)))
-
-
 def test_steps_on_an_inverse_multiply_by_the_compliance_once_or_twice(monkeypatch):
     """Once for the certificate, and once more where a step of refinement was needed: not in each iteration."""
 
@@ -269,13 +263,11 @@ def test_legs_from_the_displacements_of_another_leg_are_noticed(monkeypatch):
 def test_one_step_taken_for_enough(monkeypatch):
     """Deliberate fault: the rates at the ends of a leg are not asked for. Each step has its certificate; m is off by
     what section 7 of docs/theory.md warns of."""
-    exact = steady(Loads(7.0, np.pi * 0.55), HertzShape()).last.zone
-    vertices, *problem = cells(points=(-1, *exact, 1), size=1e-3, growth=0.07)
+    exact, vertices, problem, _ = drifted()
 
     def off():
         found = march(*problem, 1.0, loads(0.55, 7.0))
-        zone = read_stick_zone(problem[1][0], found.bound, found.change, vertices, lambda each: each, found.changed)
-        return abs(zone.left - exact.left), max(step.residual.max() for step in found.points)
+        return abs(read(vertices, found).left - exact.zone.left), max(step.residual.max() for step in found.points)
 
     assert off()[0] < 1e-4
     monkeypatch.setattr(coulomb_constant_pressure._Contact, "_suffices", lambda *_: True)

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from plain import plain
 
-from partialslip import parse_scene, run
+from partialslip import run
 from partialslip.friction import coulomb_varying_events, path_following
 from partialslip.friction.load_path import Path
 from partialslip.friction.normal import Presses
@@ -98,10 +99,8 @@ P = 400e6 * np.pi * 1e-3 / 2
 
 def march(more):
     """march at (Q_f, s_f) = (0.55, 7) with P and P (1 + ``more``) at the load points."""
-    scene = parse_scene({
-        "name": "turns", "material": {"E": 72.8e9, "nu": 0.3}, "profile": {"kind": "hertz", "R": 0.05},
-        "friction": {"f": 0.5}, "load": TURNS | {"P": [P, P * (1 + more)]}, "fem": {"accuracy": 1e-3},
-    })  # fmt: skip
+    load, profile = TURNS | {"P": [P, P * (1 + more)]}, {"kind": "hertz", "R": 0.05}
+    scene = plain(load, 0.5, (72.8e9, 0.3), profile, fem={"accuracy": 1e-3})
     return run(scene, ["march"])["march"]
 
 
@@ -124,15 +123,10 @@ def test_one_step_where_slip_turns_round(monkeypatch):
 
 def narrow(accuracy=1e-4):
     """The fem result of a contact near sliding that grows by 1.6e-4 a, so that small elements touch and open."""
-    scene = parse_scene({
-        "name": "narrow", "material": {"E": 1347203060.0447671, "nu": 0.49999},
-        "profile": {"kind": "hertz", "R": 5.248609683542675}, "friction": {"f": 0.0596601601614902},
-        "load": {
-            "P": [15275.572883779996, 15280.4682811554], "Q": [-875.3235582895744, 875.3235582895744],
-            "sigma": [307842.9919628372, -307842.9919628372], "cycles": 3,
-        },
-        "fem": {"accuracy": accuracy},
-    })  # fmt: skip
+    load = {"P": [15275.572883779996, 15280.4682811554], "Q": [-875.3235582895744, 875.3235582895744]}
+    load |= {"sigma": [307842.9919628372, -307842.9919628372], "cycles": 3}
+    material, profile = (1347203060.0447671, 0.49999), {"kind": "hertz", "R": 5.248609683542675}
+    scene = plain(load, 0.0596601601614902, material, profile, fem={"accuracy": accuracy})
     return run(scene, ["fem"])["fem"]
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from known import EXACT, SCENE, result
+from plain import plain
 
 import partialslip
 from partialslip.friction import history, limit
@@ -13,26 +14,19 @@ from partialslip.friction.regime import _unsure
 from partialslip.run.judge import Outcome, compare
 from partialslip.run.judge.verdicts import Bar, judge_regime
 
-CREEP = {
-    "name": "creep",
-    "material": {"E": 72.8e9, "nu": 0.3},
-    "profile": {"kind": "hertz", "R": 0.02},
-    "friction": {"f": 0.35},
-    "load": {"P": 2e5, "Q": [-32700.0, 0.0], "sigma": [-266e6, -103e6]},
-    "fem": {"accuracy": 1e-2},
-}
+LOAD, HERTZ = {"P": 2e5, "Q": [-32700.0, 0.0], "sigma": [-266e6, -103e6]}, {"kind": "hertz", "R": 0.02}
+CREEP = plain(LOAD, 0.35, (72.8e9, 0.3), HERTZ, fem={"accuracy": 1e-2})
 PAD = Path(__file__).parents[2] / "docs" / "scenes" / "finite-pad.toml"
 LEFT = 0.9664747169  # exact m, in a
 
 
 @pytest.fixture(scope="module")
 def exact():
-    return partialslip.run(partialslip.parse_scene(CREEP), ["exact"])["exact"]
+    return partialslip.run(CREEP, ["exact"])["exact"]
 
 
 def solved(method, **loads):
-    scene = partialslip.parse_scene(CREEP | {"load": CREEP["load"] | loads})
-    return partialslip.run(scene, [method])[method]
+    return partialslip.run(CREEP.replace(load=loads), [method])[method]
 
 
 @pytest.mark.parametrize("method", ["march", "fem"])
@@ -60,7 +54,7 @@ def test_cycles_that_end_as_soon_as_q_hardly_changes(monkeypatch, exact):
 def test_few_cycles_are_not_judged_against_the_steady_state(exact):
     """Two cycles that are asked for are no mistake of the method; thirty are steady."""
     found = solved("march", cycles=2)
-    judged = compare(found, exact, partialslip.parse_scene(CREEP), 1e-2)
+    judged = compare(found, exact, CREEP, 1e-2)
     assert judged.outcome is Outcome.NOT_JUDGED
     assert "m" in judged.unjudged  # n and q are within their bars all the same
     assert "2 cycles (load.cycles) do not reach the steady state" in str(judged.verdicts)
@@ -69,7 +63,7 @@ def test_few_cycles_are_not_judged_against_the_steady_state(exact):
 
 def test_two_results_of_as_many_cycles_are_compared():
     found = solved("march", cycles=2)
-    assert compare(found, found, partialslip.parse_scene(CREEP), 1e-2).passed
+    assert compare(found, found, CREEP, 1e-2).passed
 
 
 def test_slip_that_is_too_small_tells_no_ratcheting():

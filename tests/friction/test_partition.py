@@ -46,7 +46,7 @@ def test_any_partition(step, opens, core):
     direct = alone._linear_solve(alone._solver(touch, slip), touch, slip, True)
     for one, other in zip(found, direct, strict=True):
         assert one == pytest.approx(other, abs=1e-12)
-    opening, rest = step._off(found)
+    opening, rest = step._gap_and_slip(found)
     scale = step._scale(found).max()
     assert np.abs(opening[touch]).max() <= 1e-14 * scale * np.diag(step.yy).max()
     assert np.abs(rest[touch & (slip == 0)]).max() <= 1e-14 * scale * np.diag(step.xx).max()

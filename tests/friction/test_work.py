@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from plain import plain
 
 import partialslip
 from partialslip.friction import history as following
@@ -11,27 +12,16 @@ from partialslip.friction import steps
 from partialslip.halfplane import slip
 from partialslip.halfplane.method import _half_cycle
 
-TENSE = {
-    "P": [508380.2723, 635475.3404],
-    "Q": [-63547.534, 76257.041],
-    "sigma": [-404556166.5, 404556166.5],
-}
+TENSE = {"P": [508380.2723, 635475.3404], "Q": [-63547.534, 76257.041], "sigma": [-404556166.5, 404556166.5]}
 STEEP = {"P": [571927.8, 635475.3], "Q": [-101676.1, 114385.6], "sigma": [-566378633.0, 566378633.0]}
 CONSTANT = TENSE | {"sigma": [1e8, 1e8]}  # one step is known to suffice for q
 
 
-def scene(load, accuracy=1e-2, **more):
-    return partialslip.parse_scene(
-        {
-            "name": "work",
-            "material": {"E": 72.1e9, "nu": 0.33},
-            "profile": {"kind": "hertz", "R": 0.05},
-            "friction": {"f": 0.4},
-            "load": load,
-            "fem": {"accuracy": accuracy},
-            **more,
-        }
-    )
+def scene(load, f=0.4, R=0.05, **more):
+    return plain(load, f, **{"profile": {"kind": "hertz", "R": R}, "fem": {"accuracy": 1e-2}} | more)
+
+
+UNLIKE = {"upper": {"E": 210e9, "nu": 0.3}, "lower": {"E": 70e9, "nu": 0.3}}
 
 
 def worn(of, method):
@@ -88,10 +78,8 @@ def test_all_kinks_of_a_rough_profile_count():
     x = np.linspace(0, 1.5e-3, 60)
     slopes = np.cumsum(random.uniform(0.2, 1.8, len(x) - 1) * np.diff(x)) / 0.02
     gap = np.concatenate([[0.0], np.cumsum(slopes * np.diff(x))])
-    rough = scene(
-        {"P": 4e5, "Q": [-1e5, 1e5], "sigma": [-1e8, 1e8]},
-        profile={"kind": "tabulated", "x": x.tolist(), "gap": gap.tolist()},
-    )
+    table = {"kind": "tabulated", "x": x.tolist(), "gap": gap.tolist()}
+    rough = scene({"P": 4e5, "Q": [-1e5, 1e5], "sigma": [-1e8, 1e8]}, profile=table)
     _, cycle = _half_cycle(rough)
     found = cycle.worn
     with pytest.MonkeyPatch.context() as patch:
@@ -103,11 +91,7 @@ def test_all_kinks_of_a_rough_profile_count():
 
 @pytest.mark.slow
 def test_coupled_bodies_take_the_difference_of_finer_steps_for_the_error():
-    unlike = scene(
-        {"P": 2e5, "Q": [-2e4, 3e4]},
-        material={"upper": {"E": 210e9, "nu": 0.3}, "lower": {"E": 70e9, "nu": 0.3}},
-        friction={"f": 0.3},
-    )
+    unlike = scene({"P": 2e5, "Q": [-2e4, 3e4]}, 0.3, material=UNLIKE)
     few, more = worn(unlike, "march"), worn(unlike.replace({"load.steps": 8}), "march")
     assert abs(few.dissipated - more.dissipated) < 0.1 * few.dissipated_error
     assert few.dissipated_error < 0.05 * few.dissipated
@@ -116,12 +100,7 @@ def test_coupled_bodies_take_the_difference_of_finer_steps_for_the_error():
 @pytest.mark.slow
 def test_more_steps_where_slip_of_unlike_bodies_turns_round():
     """march of unlike bodies takes more steps by itself: in one step m is off by a tenth of a."""
-    turning = scene(
-        {"P": 2e5, "Q": [5e4, -2e4], "sigma": [3e8, 0.0]},
-        material={"upper": {"E": 210e9, "nu": 0.3}, "lower": {"E": 70e9, "nu": 0.3}},
-        friction={"f": 0.3},
-        profile={"kind": "hertz", "R": 0.02},
-    )
+    turning = scene({"P": 2e5, "Q": [5e4, -2e4], "sigma": [3e8, 0.0]}, 0.3, R=0.02, material=UNLIKE)
     found = partialslip.run(turning, ["march"])["march"]
     assert found.counts["steps"] == 8
     assert found.shares["steps"]["m"] < 1e-3
@@ -131,21 +110,12 @@ def test_more_steps_where_slip_of_unlike_bodies_turns_round():
 @pytest.mark.slow
 def test_steps_of_a_pad_are_more_as_soon_as_pressing_is_known_better():
     """On the first meshes the error of pressing hides that of one step, on the last mesh it does not."""
-    pad = partialslip.parse_scene(
-        {
-            "name": "pad",
-            "units": "N-mm",
-            "material": {"E": 116e3, "nu": 0.32},
-            "profile": {"kind": "hertz", "R": 60},
-            "friction": {"f": 0.6},
-            "load": {"P": 250, "Q": [-100, 100], "sigma": [30, 300]},
-            "bodies": {
-                "upper": {"kind": "pad", "width": 12, "height": 12},
-                "lower": {"width": 40, "height": 5, "support": "roller", "pulled": True},
-            },
-            "fem": {"accuracy": 5e-5},
-        }
-    )
+    bodies = {
+        "upper": {"kind": "pad", "width": 12, "height": 12},
+        "lower": {"width": 40, "height": 5, "support": "roller", "pulled": True},
+    }
+    more = {"material": (116e3, 0.32), "bodies": bodies, "fem": {"accuracy": 5e-5}, "units": "N-mm"}
+    pad = scene({"P": 250, "Q": [-100, 100], "sigma": [30, 300]}, 0.6, R=60, **more)
     found = partialslip.run(pad, ["fem"])["fem"]
     assert found.counts["steps"] > 1
     assert not any("too few" in note for note in found.notes)

@@ -25,6 +25,15 @@ def cycle(Qf, sf, shape=None):
         (0.75, 6.0),
         pytest.param(0.6434668934976868, 8.670889385947003, marks=pytest.mark.slow),
         (0.9975, 7.2),
+        # with an inner slip zone:
+        (0.9, 9.0),  # b turns round shortly before the left interval vanishes
+        (0.53022, 9.55338),  # a moves by 1e-6 only, before the inner zone closes
+        pytest.param(0.9, 14.0, marks=pytest.mark.slow),  # on its way back b passes where it began
+        pytest.param(0.85, 9.0, marks=pytest.mark.slow),  # half cycles tend slowly to the steady one
+        pytest.param(0.47450296749, 19.4127801131, marks=pytest.mark.slow),  # breaks two widths of the drift before
+        pytest.param(0.3827638404516185, 16.617226290315028, marks=pytest.mark.slow),  # no point sticks throughout
+        pytest.param(0.75640025965298385, 11.57815391228589, marks=pytest.mark.slow),  # the same, from mixed states
+        pytest.param(0.40770240756657306, 15.993849408989083, marks=pytest.mark.slow),  # half cycles grew
     ],
 )
 def test_all_conditions_hold(Qf, sf):

@@ -4,9 +4,9 @@ import functools
 
 import numpy as np
 import pytest
+import reversed_loads
 
 import partialslip
-from partialslip.halfplane import contact
 from partialslip.halfplane.gradual_path import from_zero
 from partialslip.halfplane.gradual_path.stage import Loads
 
@@ -15,11 +15,8 @@ X = np.linspace(-0.999, 0.999, 201)
 
 
 def scene(Qf, sf, mean, *more, turn=1, mirror=1):
-    base = partialslip.load_scene("hertz-shear")
-    limit, stress = turn * base.friction.f * base.P, turn * mirror * base.friction.f * contact(base).p0
-    Q = [limit * (mean[0] - Qf), limit * (mean[0] + Qf)]
-    sigma = [stress * (mean[1] - sf / 2), stress * (mean[1] + sf / 2)]
-    return partialslip.load_scene("hertz-shear", [f"load.Q={Q}", f"load.sigma={sigma}", *more])
+    mean = turn * mean[0], turn * mirror * mean[1]
+    return reversed_loads.scene(turn * Qf, turn * mirror * sf, *more, name="hertz-shear", mean=mean)
 
 
 @functools.cache

@@ -54,23 +54,6 @@ def test_the_inner_zone_opens_by_two_thirds_of_the_way_of_z0():
         assert moved[B] / moved[Z] == pytest.approx(2 / 3, abs=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("Qf", "sf"),
-    [
-        (0.9, 9.0),  # b turns round shortly before the left interval vanishes
-        (0.53022, 9.55338),  # a moves by 1e-6 only, before the inner zone closes
-        pytest.param(0.9, 14.0, marks=pytest.mark.slow),  # on its way back b passes where it began
-        pytest.param(0.85, 9.0, marks=pytest.mark.slow),  # half cycles tend slowly to the steady one
-        pytest.param(0.47450296749, 19.4127801131, marks=pytest.mark.slow),  # breaks two widths of the drift before
-        pytest.param(0.3827638404516185, 16.617226290315028, marks=pytest.mark.slow),  # no point sticks throughout
-        pytest.param(0.75640025965298385, 11.57815391228589, marks=pytest.mark.slow),  # the same, from mixed states
-        pytest.param(0.40770240756657306, 15.993849408989083, marks=pytest.mark.slow),  # half cycles grew
-    ],
-)
-def test_hard_ways_are_followed(Qf, sf):
-    assert certificate_of(steady(Loads(sf, np.pi * Qf), HertzShape())).worst < 1e-9
-
-
 def test_points_that_change_from_one_interval_to_the_other_have_slipped():
     """Two intervals stick, (-0.9, -0.3) and (0.1, 0.9); then one, (-0.4, 0.8). If the left interval has vanished, the
     points between -0.4 and -0.3 were in the inner zone meanwhile, and so were those up to 0.1; if the inner zone has

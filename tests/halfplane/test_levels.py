@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from boundary_elements import march
+from plain import plain
 
 import partialslip
 from partialslip import halfplane
@@ -14,17 +15,12 @@ from partialslip.halfplane.punch import Punch
 from partialslip.scene import Load
 
 P = np.pi / 2  # of a contact with a = p0 = 1
-MINDLIN = {
-    "name": "mindlin-deresiewicz",
-    "material": {"E": 70e9, "nu": 0.3},
-    "profile": {"kind": "hertz", "R": 0.02},
-    "friction": {"f": 0.4},
-    "load": {"a": 1e-3, "Q": [181245.73001, 483321.94669]},  # 0.3 and 0.8 f P
-}
 
 
 def scene(**load):
-    return partialslip.parse_scene(MINDLIN | {"load": MINDLIN["load"] | load})
+    """Of Mindlin and Deresiewicz: 0.3 and 0.8 f P."""
+    load = {"a": 1e-3, "Q": [181245.73001, 483321.94669]} | load
+    return plain(load, 0.4, (70e9, 0.3), {"kind": "hertz", "R": 0.02})
 
 
 def exact(its, **options):

@@ -72,13 +72,6 @@ def test_flat_and_rounded_contact():
             force = result.a**2 / (A * R) * ((np.pi - 2 * phi0) / 2 - np.sin(phi0) * np.cos(phi0))
             assert force == pytest.approx(P, rel=1e-10)
         assert result.a >= b
-    hertz = exact("hertz-shear", "load.Q=[0, 0]")
-    P = np.pi * hertz.a * hertz.p0 / 2
-    nearly = exact(
-        "flat-rounded", "material.E=72.8e9", "material.nu=0.3", "profile.R=0.05", "profile.b=1e-9", f"load.P={P}",
-        "load.Q=[0, 0]", "load.sigma=[0, 0]",
-    )  # fmt: skip
-    assert nearly.a == pytest.approx(hertz.a, rel=1e-5)
 
 
 def test_limits_are_where_something_else_begins():
@@ -86,9 +79,8 @@ def test_limits_are_where_something_else_begins():
     sliding, transition, mean = (base.limits[key] for key in ("Q_sliding", "dsigma_transition", "Q_mean"))
     load = load_scene("hertz-large-tension").load
     assert transition > 0  # that of a single step; under gradual loads small tension goes on beyond
-    for key, at, below, above in (("Q", sliding, "small tension", "sliding"),):
-        for factor, regime in ((1 - 1e-6, below), (1 + 1e-6, above)):
-            assert exact("hertz-large-tension", f"load.{key}=[{-at * factor}, {at * factor}]").regime == regime
+    for factor, regime in ((1 - 1e-6, "small tension"), (1 + 1e-6, "sliding")):
+        assert exact("hertz-large-tension", f"load.Q=[{-sliding * factor}, {sliding * factor}]").regime == regime
     for factor, regime in ((1 - 1e-6, "large tension"), (1 + 1e-6, "ratchets")):
         Q = [factor * mean - load.dQ / 2, factor * mean + load.dQ / 2]
         assert exact("hertz-large-tension", f"load.Q={Q}").regime == regime

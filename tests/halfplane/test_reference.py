@@ -181,23 +181,6 @@ def test_stick_zones_to_12_digits(flat):
         assert max(errors(case, found)) <= 1e-12, case
 
 
-@pytest.mark.slow
-def test_the_sample_reaches_all_ends():
-    sample = [case for flat in FLATS for case in cases(flat)]
-    assert len(sample) >= 200
-    for of in (
-        [case for flat in FLATS[:1] for case in cases(flat)],
-        [case for flat in FLATS[1:] for case in cases(flat)],
-    ):
-        zones = [case.zone for case in of]
-        for s in (1, -1):
-            assert sum(zone.s == s for zone in zones) >= 45
-            assert sum(zone.s == s and zone.half_width < -zone.centre for zone in zones) >= 10  # n < 0
-            touching = [zone for zone in zones if zone.s == s and abs(1 + zone.centre - zone.half_width) < 2 * TOUCHING]
-            assert len(touching) >= 10
-        assert min(zone.half_width for zone in zones) < 2e-8
-
-
 def dropped_sign(monkeypatch):
     """Both ends taken to slip the same way, whatever the regime."""
     right = HertzShape.conditions

@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 from digits import pressure
+from plain import plain as made
 
 import partialslip
 from partialslip import halfplane
@@ -25,6 +26,7 @@ from partialslip.tools.errors import InputError
 P = math.pi / 2  # of a contact with a = p0 = 1
 UNIT = Contact(1.0, P, HertzShape())
 LOADS = [(0.3, 0.5, 1.2), (0.3, 4, 1.2), (0.3, 4, -1.2), (-0.2, 0.6, 3), (-0.2, 5, 3), (0.5, 1, -2), (0, 0, 2)]
+PLAIN = [(0.3, 4.0), (0.4, 4.03), (0.3, 8.0), (0.471569, 8.888889)]  # large tension
 
 
 def random_loads(count, seed, largest=8.0):
@@ -79,12 +81,18 @@ def test_the_conditions_hold_in_30_digits(shape, count):
 
 
 @pytest.mark.parametrize("shape", [HertzShape(), Punch(0.5)])
-def test_bracketing_finds_the_same(shape):
-    Qf, sf, gf = random_loads(30, 3)
+@pytest.mark.parametrize("sloped", [True, False])
+def test_bracketing_finds_the_same(shape, sloped):
+    Qf, sf, gf = random_loads(50, 3)
+    Qf, gf = (Qf, gf) if sloped else (np.abs(Qf), 0 * gf)
     with np.errstate(divide="ignore", invalid="ignore"):
-        (edge, c), (other_edge, other_c) = (way(Qf, sf, shape, gf) for way in (steady._solve, steady._bracketed))
+        (edge, c), (other_edge, other_c) = (
+            way(Qf, sf, shape, gf) for way in (steady._edge_and_centre, steady._bracketed)
+        )
     known = np.isfinite(c)
     assert known.sum() > 20
+    assert min((edge > 0).sum(), (edge < 0).sum()) > 5  # small and large tension
+    assert (np.sign(edge) == np.sign(other_edge))[known].all()
     assert edge[known] == pytest.approx(other_edge[known], rel=0, abs=1e-11)
     assert c[known] == pytest.approx(other_c[known], rel=1e-11)
 
@@ -160,19 +168,26 @@ def test_slip_is_the_integral_of_its_density(Qf, sf, gf):
     assert density(x, zone, shape, gf) == pytest.approx(slopes, abs=1e-5)
 
 
-@pytest.mark.parametrize(("Qf", "sf", "gf"), [*LOADS, (-0.5, 0.3, 6.0)])
-def test_the_bound_of_mean_loads_is_the_room_of_the_stick_zone(Qf, sf, gf):
-    """All along the way, or at the load points where slip reverses."""
-    cycle, shape = one_step(Qf, sf, HertzShape(), gf), HertzShape()
+@pytest.mark.parametrize(("Qf", "sf", "gf", "shape"), [
+    *((*loads, HertzShape()) for loads in (*LOADS, (-0.5, 0.3, 6.0))),
+    *((*loads, 0, shape) for shape in (HertzShape(), Punch(0.6)) for loads in PLAIN),
+])  # fmt: skip
+def test_the_bound_of_mean_loads_is_the_room_of_the_stick_zone(Qf, sf, gf, shape):
+    """All along the way, not only at the load points; or at these alone where slip reverses."""
+    cycle = one_step(Qf, sf, shape, gf)
     angle = (np.arange(4000) + 0.5) / 4000 * np.pi
     x = cycle.zone.centre + cycle.zone.half_width * np.cos(angle)
     q = half_range(x, cycle.zone, shape, gf)
-    taken = np.abs(q)
+    taken = at_ends = np.abs(q)
     for share in np.arange(1, 100) / 100 if not cycle.turns_round else ():
         so_far = half_range(x, steady_stick_zone(share * Qf, share * sf, shape, share * gf), shape, share * gf)
         taken = np.maximum(taken, np.abs(2 * so_far - q))
-    room = 2 / np.pi * cycle.zone.half_width * ((shape.pressure(x) - taken) @ np.sin(angle)) * np.pi / 4000
+    room, loose = (
+        2 / np.pi * cycle.zone.half_width * ((shape.pressure(x) - each) @ np.sin(angle)) * np.pi / 4000
+        for each in (taken, at_ends)
+    )
     assert cycle.mean_load_bound == pytest.approx(room, abs=1e-5)
+    assert cycle.mean_load_bound < loose - 1e-4 or cycle.turns_round or gf
 
 
 @pytest.mark.fault
@@ -187,12 +202,17 @@ def test_a_slope_of_the_wrong_sign_is_seen(monkeypatch):
 
 def test_where_slip_does_not_reverse_steps_do_not_matter():
     """Of loads that turn round, and only of those, many steps give another q than one."""
-    for Qf, sf, gf, turns in ((0.3, 4.0, 1.2, False), (-0.4, 2.0, 6.0, False), (0.0, 0.0, 22.0, True)):
+    plain, sloped = (
+        ((0.3, 4, 0, False), (0.75, 4.5, 0, True)),
+        ((0.3, 4, 1.2, False), (-0.4, 2, 6, False), (0, 0, 22, True)),
+    )
+    for Qf, sf, gf, turns in (*plain, *sloped):
         assert loading(UNIT, 1.0, 2 * P * Qf, sf, gf, bound=2).turns_round == turns
         cycle = [(Qf, sf / 2, gf / 2), (-Qf, -sf / 2, -gf / 2), (Qf, sf / 2, gf / 2)]
         one, many = (boundary_elements.march(HertzShape(), cycle, 160, steps)[3] for steps in (1, 24))
         apart = np.abs((one[2] - one[1]) - (many[2] - many[1])).max()
         assert (apart > 1e-3) == turns
+        assert gf or turns or apart < 1e-9
 
 
 # --- scenes
@@ -201,8 +221,7 @@ def test_where_slip_does_not_reverse_steps_do_not_matter():
 def scene(Q, sigma, slope, profile=None, P=None, **load):
     """A scene with loads in f P, f p0 and f p0/a."""
     profile = profile or {"kind": "hertz", "R": 0.01}
-    data = {"name": "slope", "material": {"E": 72e9, "nu": 0.33}, "friction": {"f": 0.3}, "profile": profile}
-    plain = partialslip.parse_scene({**data, "load": {"P": P or 1.27e5, **load}})
+    plain = made({"P": P or 1.27e5, **load}, material=(72e9, 0.33), profile=profile)
     pressed = halfplane.contact(plain)
     unit = 0.3 * pressed.p0
     loads = {"Q": 0.3 * pressed.P * np.array(Q), "sigma": unit * np.array(sigma)}

@@ -1,4 +1,4 @@
-"""The stick zone: the modulus of its elliptic integrals, quadrature against closed forms, and its limits."""
+"""The stick zone: the modulus of its elliptic integrals, and its limits."""
 
 import math
 
@@ -8,7 +8,6 @@ import pytest
 
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.punch import Punch
-from partialslip.halfplane.shape import Shape
 from partialslip.halfplane.steady import steady_stick_zone, transition
 from partialslip.result import StickZone
 
@@ -62,24 +61,6 @@ def test_stick_zone_never_vanishes():
     rate = math.pi * 10 / (16 * math.sqrt(1 - zone.centre**2))
     assert math.log(zone.half_width / more.half_width) == pytest.approx(rate, rel=1e-6)
     assert zone.centre + zone.half_width < 0  # it lies beside the middle
-
-
-@pytest.mark.parametrize("s", [1, -1])
-@pytest.mark.parametrize(("centre", "c"), [(-0.2, 0.5), (-0.01, 0.3), (-0.4, 1e-2), (-0.4, 1e-9), (-0.499999, 0.5)])
-def test_quadrature_is_as_good_as_the_closed_forms(centre, c, s):
-    edge = 1 + centre - c
-    assert Shape.conditions(HERTZ, edge, c, s)[:2] == pytest.approx(
-        HERTZ.conditions(edge, c, s)[:2], rel=1e-13, abs=2e-14
-    )
-
-
-def test_flat_and_rounded_tends_to_hertz():
-    loads = [(0.3, 1.0), (0.3, 4.0)]
-    for Qf, sf in loads:
-        zones = [steady_stick_zone(Qf, sf, shape) for shape in (HERTZ, Punch(1e-3), Punch(1e-5))]
-        off = [abs(zone.centre - zones[0].centre) + abs(zone.half_width - zones[0].half_width) for zone in zones]
-        assert off[2] < 3e-5
-        assert off[2] == pytest.approx(off[1] / 100, rel=0.3)
 
 
 @pytest.mark.parametrize("flat", [0.1, 0.9, 0.999])

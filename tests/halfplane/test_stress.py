@@ -1,7 +1,6 @@
 """Stresses on the surfaces of the half-planes and inside them."""
 
 import functools
-import itertools
 import math
 
 import mpmath as mp
@@ -80,26 +79,6 @@ def shear(Qf, sf, shape):
     return ends, lambda x: F * half_range(x, zone, shape)
 
 
-def flamant(stress, x, y, Qf, sf):
-    """Stresses at one point, as the sum over point forces on the surface; load point 2."""
-    shape = stress.contact.shape
-    places, q = shear(Qf, sf, shape)
-    breaks = [-1, 1, *shape.kinks, *places]
-    around = np.abs(y) * 2.0 ** np.arange(-2, 40)
-    ends = np.unique(np.clip([*breaks, x, *(x - around), *(x + around)], -1, 1))
-    grid = np.linspace(-3.3, 3.3, 91)
-    nodes, to_end = np.tanh(np.pi / 2 * np.sinh(grid)), 2 / (1 + np.exp(np.pi * np.sinh(grid)))
-    weights = (grid[1] - grid[0]) * np.pi / 2 * np.cosh(grid) / np.cosh(np.pi / 2 * np.sinh(grid)) ** 2
-    half = np.diff(ends)[:, None] / 2
-    t = np.where(nodes < 0, ends[:-1, None] + half * (1 + nodes), ends[1:, None] - half * to_end).ravel()
-    side, r = (1 if y < 0 else -1), x - t
-    # forces on the body: along x, and into it
-    along, into = -side * q(t), shape.pressure(t)
-    radial = 2 / np.pi * (along * r + into * np.abs(y)) / (r**2 + y**2) ** 2 * (half * weights).ravel()
-    components = -np.array([radial @ r**2, radial @ (0 * r + y**2), radial @ (r * y)])
-    return components + np.array([F * sf / 2 if y < 0 else 0, 0, 0])
-
-
 # --- inside
 
 
@@ -111,17 +90,6 @@ def test_hertz_without_friction(depth):
     for y, sign in ((-depth, 1), (depth, -1)):
         for found in stress.inside(x, y + 0 * x):
             assert found == pytest.approx(expected * np.array([[1], [1], [sign]]), rel=0, abs=1e-12)
-
-
-@every_case
-def test_sum_of_point_forces(Qf, sf, shape):
-    stress = scaled(shape, Qf, sf)
-    x = places(stress, count=2)[::3]
-    for depth, side in itertools.product((1e-8, 1e-4, 0.3), (1, -1)):
-        expected = np.stack([flamant(stress, place, -side * depth, Qf, sf) for place in x], axis=1)
-        # distances from the forces have rounding errors
-        rounding = np.finfo(float).eps / depth
-        assert stress.inside(x, -side * depth + 0 * x)[1] == pytest.approx(expected, rel=0, abs=1e-10 + rounding)
 
 
 # --- on the surfaces
@@ -150,7 +118,7 @@ def test_surface_is_strained_by_the_slope_of_the_slip(Qf, sf, shape):
     x = np.linspace(-1, 1, 401)[1:-1]
     (_, lower), (_, upper) = stress.surface(x)
     assert lower + upper == pytest.approx(-2 * shape.pressure(x) + F * sf / 2, rel=0, abs=1e-11)
-    if turns_round(Qf, sf, zone.s, zone.centre, zone.half_width):  # test_sum_of_point_forces checks the slope there
+    if turns_round(Qf, sf, zone.s, zone.centre, zone.half_width):  # test_stress_at.py sums up forces there
         left, right = turned(Qf, sf, shape).permanent
         sticks = (x > left) & (x < right)
     else:
@@ -234,8 +202,8 @@ def test_a_pressure_of_ones_own():
 # --- as results
 
 
-def result(name, *overrides, subsurface=True):
-    return partialslip.run(partialslip.load_scene(name, overrides), ["exact"], subsurface=subsurface).results["exact"]
+def result(name, *overrides):
+    return partialslip.run(partialslip.load_scene(name, overrides), ["exact"], subsurface=True).results["exact"]
 
 
 @pytest.mark.parametrize("name", partialslip.shipped_scenes())
@@ -256,12 +224,18 @@ def test_reported_for_every_scene(name):
     assert shear == pytest.approx(-np.stack([exact.traction.q1, exact.traction.q2]), rel=0, abs=1e-7 * exact.p0)
 
 
-def test_only_where_asked_for_and_known():
-    assert result("hertz-shear", subsurface=False).surface is None
-    assert result("hertz-shear", subsurface=False).stress_at is None
-    sliding = ("load.Q=[-4e5, 4e5]",)
-    exact = result("hertz-large-tension", *sliding)
-    assert (exact.surface, exact.stress_at) == (None, None)
+@pytest.mark.parametrize("method", ["exact", "march", "fem"])
+def test_only_where_asked_for_and_known(method):
+    """Where the contact slides q is not known, and stresses without it would be wrong."""
+    scene = partialslip.load_scene("hertz-shear", ["fem.accuracy=1e-2"])
+    plain = partialslip.run(scene, method)[method]
+    sliding = partialslip.run(scene.replace(load={"Q": [-4e5, 4e5]}), method, subsurface=True)[method]
+    for found in (plain, sliding):
+        assert (found.surface, found.stress_at, found.bodies) == (None, None, ())
+    assert "slides" in sliding.undetermined["stresses"]
+
+
+def test_stresses_of_a_contact_that_is_pressed_alone():
     pressed = result("hertz-large-tension", "load.Q=[0, 0]", "load.sigma=[0, 0]")
     assert pressed.surface.at(np.array([0.0])) == pytest.approx(-pressed.p0, rel=1e-12)
     with pytest.raises(InputError, match="slides"):

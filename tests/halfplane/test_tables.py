@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from plain import plain
 
 import partialslip
 from partialslip.halfplane.contact import Contact, contact
@@ -20,10 +21,7 @@ P = 3 * np.pi * 1e-6 / (2 * A)  # with the gap 1e-6 (x/a)^4, a = 1 mm
 def table(x, gap=lambda x: x**4, Qf=0.4, sf=3.0):
     """At x in mm; gap in um; loads of the quartic."""
     load = {"P": P, "Q": [-Qf * F * P, Qf * F * P], "sigma": [-sf * F * P / np.pi * 1e3, sf * F * P / np.pi * 1e3]}
-    return partialslip.parse_scene(
-        {"name": "table", "material": {"E": 70e9, "nu": 0.3}, "friction": {"f": F}, "load": load,
-         "profile": {"kind": "tabulated", "x": (1e-3 * x).tolist(), "gap": (1e-6 * gap(x)).tolist()}}
-    )  # fmt: skip
+    return plain(load, F, (70e9, 0.3), {"kind": "tabulated", "x": 1e-3 * x, "gap": 1e-6 * gap(x)})
 
 
 def quartic():

@@ -18,8 +18,8 @@ import numpy as np
 from partialslip import halfplane, load_scene, load_state, plan
 from partialslip.friction import coulomb_constant_pressure as coulomb
 from partialslip.friction import steps
+from partialslip.march import driver
 from partialslip.march import method as marching
-from partialslip.march import similar
 from partialslip.run.judge import Q_BAR, cell_means
 from partialslip.tools.arrays import Array
 from partialslip_fem import bodies, solving
@@ -134,7 +134,7 @@ def guise(*patches, own=False):
     meshes do."""
     with ExitStack() as stack:
         if not own:
-            stack.enter_context(patch.object(similar, "_MESHES", ((1e-3, 0.1),)))
+            stack.enter_context(patch.object(driver, "MESHES", ((1e-3, 0.1),)))
             stack.enter_context(patch.object(steps, "one_step_suffices", lambda _: True))
         called = [stack.enter_context(each) for each in patches]
         yield

@@ -13,7 +13,7 @@ from partialslip.result import RATCHETS
 from partialslip.run import default_methods
 from partialslip.run.judge import Outcome, verdicts
 from partialslip.run.judge.reference import ALL_EFFECTS, error_of, reference, reference_among
-from partialslip.run.methods import METHODS, REFERENCES
+from partialslip.tools.methods import METHODS, REFERENCES
 
 KNOWN = {"a": 1e-6, "p": 1e-6, "m": 1e-6, "n": 1e-6, "q": 1e-6}
 STEEL = "material={lower={E=2.1e11, nu=0.3}, upper={E=0.7e11, nu=0.3}}"

@@ -42,7 +42,7 @@ def answered(script, told, change=lambda text: text):
 
 def asked(loads, change=lambda text: text):
     """Left end, right end and s by the page's program, None where it has none."""
-    return answered(ASK, {"table": live._table(), "loads": loads.tolist()}, change)
+    return answered(ASK, {"table": live._gradual_table(), "loads": loads.tolist()}, change)
 
 
 def turned():

@@ -102,14 +102,6 @@ def test_mirrored():
     assert mirrored == pytest.approx(one.stress_at(x, y), rel=0, abs=1e-9 * one.p0)
 
 
-def test_sliding_and_what_was_not_asked_for():
-    sliding = load_scene("hertz-shear", ["load.Q=[-4e5, 4e5]"])
-    (march,) = solved(sliding, "march")
-    assert march.stress_at is None
-    assert "slides" in march.undetermined["stresses"]
-    assert partialslip.run(load_scene("hertz-shear", ["fem.accuracy=1e-2"]), "march")["march"].stress_at is None
-
-
 def test_bad_points_and_none():
     (march,) = solved(load_scene("hertz-shear", ["fem.accuracy=1e-2"]), "march")
     assert march.stress_at([], [], [0.1]).shape == (1, 3, 0)

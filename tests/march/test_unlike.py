@@ -4,13 +4,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from plain import plain
 from scipy.special import xlogy
 
 import partialslip
 from partialslip import load_scene, parse_scene
 from partialslip.friction import coulomb_coupled
 from partialslip.friction.even_gap import PARABOLA, EvenGap
-from partialslip.march import punch_growth, unlike
+from partialslip.march import driver, punch_growth, unlike
 from partialslip.march.punch_growth import PunchGrowth, goodman_stick_zone, relative
 from partialslip.march.unlike import dundurs
 from partialslip.result import Clock
@@ -154,9 +155,9 @@ def test_compliance_of_unlike_half_planes_is_reciprocal():
 
 @pytest.fixture(autouse=True, scope="module")
 def coarse():
-    """Two meshes: what is tested does not need more."""
+    """Few meshes: what is tested does not need more."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(unlike, "_MESHES", unlike._MESHES[:2])
+        patch.setattr(driver, "MESHES", driver.MESHES[:5])
         yield
 
 
@@ -268,24 +269,13 @@ def test_nodes_that_open_on_the_way_do_not_ratchet():
     """If tractions repeat, every node that stays in contact slips by the same over a cycle, so that a place which never
     slips forbids it. What a node moves while it is open is no slip: here the contact wanders in the middle of a leg."""
     gripped = {"P": 200e3, "Q": (10e3, 70e3), "sigma": (50e6, 350e6), "steps": 8}
-    steel, titanium = {"E": 205e9, "nu": 0.3}, {"E": 116e9, "nu": 0.32}
-    scene = partialslip.parse_scene({
-        "name": "pad", "material": {"upper": steel, "lower": titanium}, "profile": {"kind": "hertz", "R": 0.025},
-        "friction": {"f": 0.6}, "load": gripped, "fem": {"accuracy": 1e-2},
-    })  # fmt: skip
+    steel_on_titanium = {"upper": {"E": 205e9, "nu": 0.3}, "lower": {"E": 116e9, "nu": 0.32}}
+    scene = plain(gripped, 0.6, steel_on_titanium, {"kind": "hertz", "R": 0.025}, fem={"accuracy": 1e-2})
     assert partialslip.run(scene, "march")["march"].regime == "large tension"
 
 
-STIFF = partialslip.parse_scene(
-    {
-        "name": "stiff-on-aluminium",
-        "material": {"E": 70e9, "nu": 0.3, "upper": {"E": 2e12, "nu": 0.3}},
-        "profile": {"kind": "hertz", "R": 0.05},
-        "friction": {"f": 0.87},
-        "load": {"P": 1e6},
-        "fem": {"accuracy": 1e-4},
-    }
-)
+STIFF_ON_ALUMINIUM = {"E": 70e9, "nu": 0.3, "upper": {"E": 2e12, "nu": 0.3}}
+STIFF = plain({"P": 1e6}, 0.87, STIFF_ON_ALUMINIUM, {"kind": "hertz", "R": 0.05}, fem={"accuracy": 1e-4})
 
 
 def closed():

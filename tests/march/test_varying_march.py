@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from plain import plain
 from varying_scenes import varying
 
-from partialslip import parse_scene, run
+from partialslip import run
 from partialslip.friction import coulomb_varying_pressure as stepping
 from partialslip.friction.load_path import Path, scaled_pressing, stretched
 from partialslip.friction.normal import Presses, press
@@ -159,39 +160,17 @@ def test_march_agrees_with_the_closed_form(scene, slips):
 
 
 @pytest.mark.slow
-def test_march_ratchets_where_the_bound_says_so():
-    """The mean of Q beyond and within the bound of the closed form, by 0.01 f P, under a varying moment."""
-    a, e = (0.9, 0.9), (0.1, -0.1)
-    limits = run(varying(a, 0.7, 8.0, e), ["exact"])["exact"].limits
-    regimes = []
-    for off in (0.01, -0.01):
-        mean = limits["Q_mean_most"] - off * math.pi * 0.9**2 / 2
-        result = run(varying(a, 0.7, 8.0, e, mean=mean, cycles=200), ["march"])["march"]
-        regimes.append(result.regime)
-    assert regimes == ["large tension", "ratchets"]
-
-
-@pytest.mark.slow
-def test_march_in_steps_ratchets_where_the_way_between_the_load_points_says_so():
-    """0.008 f P beyond the lower bound both load points alone would allow a steady state."""
+@pytest.mark.parametrize(
+    ("bound", "inwards", "how"),
+    [("Q_mean_most", -0.01, {"cycles": 200}), ("Q_mean_least", 0.008, {"cycles": 400, "steps": 16})],
+)
+def test_march_ratchets_where_the_bound_says_so(bound, inwards, how):
+    """The mean of Q within and beyond the bounds of the closed form, by so many f P, under a varying moment. 0.008 f P
+    beyond the lower one both load points alone would allow a steady state: in steps it is the way that tells."""
     a, e, P = (0.9, 0.9), (0.1, -0.1), math.pi * 0.9**2 / 2
-    least = run(varying(a, 0.7, 8.0, e), ["exact"])["exact"].limits["Q_mean_least"]
-    scenes = [varying(a, 0.7, 8.0, e, mean=least + off * P, cycles=400, steps=16) for off in (0.008, -0.008)]
+    limit = run(varying(a, 0.7, 8.0, e), ["exact"])["exact"].limits[bound]
+    scenes = [varying(a, 0.7, 8.0, e, mean=limit + way * inwards * P, **how) for way in (1, -1)]
     assert [run(scene, ["march"])["march"].regime for scene in scenes] == ["large tension", "ratchets"]
-
-
-@pytest.mark.slow
-def test_march_in_steps_ratchets_under_constant_pressure_where_the_way_says_so():
-    """0.008 f P inside and outside the bound, at 0.185; both load points alone would allow a mean of 0.209."""
-
-    def scene(mean):
-        varies = varying((0.9, 0.9), 1.2, 8.0, mean=mean, cycles=120, steps=16)
-        return varies.replace(load={"P": varies.P})
-
-    bound, P = run(scene(0.0), ["exact"])["exact"].limits["Q_mean"], scene(0.0).P
-    runs = [run(scene(bound + off * P), ["exact", "march"]) for off in (-0.008, 0.008)]
-    regimes = [[found[method].regime for method in ("exact", "march")] for found in runs]
-    assert regimes == [["large tension"] * 2, ["ratchets"] * 2]
 
 
 @pytest.mark.slow
@@ -223,14 +202,8 @@ def test_slip_that_begins_in_the_wrong_direction_is_known():
     """The adhered traction of the whole contact changes its sign inside the right slip zone: points there first slip on
     in the direction of the way before. exact and march say so; tractions, and m and n with them, end as in one step."""
     load = {"P": [1.0, 0.517], "e": -0.109, "Q": [0.1506, -0.1506], "sigma": [1.9515, -1.9515], "steps": 4}
-    scene = parse_scene({
-        "name": "wrong-way",
-        "material": {"E": 4.0, "nu": 0.0},
-        "profile": {"kind": "flat-rounded", "R": 1.0, "b": 0.6077},
-        "friction": {"f": 1.0},
-        "load": load | {"cycles": 10},
-        "fem": {"accuracy": 5e-4},
-    })  # fmt: skip
+    flat = {"kind": "flat-rounded", "R": 1.0, "b": 0.6077}
+    scene = plain(load | {"cycles": 10}, 1.0, (4.0, 0.0), flat, fem={"accuracy": 5e-4})
     found = run(scene, ["exact", "march"])
     exact, march = found["exact"], found["march"]
     assert exact.path_dependent

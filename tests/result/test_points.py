@@ -5,7 +5,7 @@ import pytest
 
 import partialslip
 from partialslip import halfplane
-from partialslip.run.methods import METHODS
+from partialslip.tools.methods import METHODS
 
 SCENE = partialslip.load_scene("fretting-aluminium")
 

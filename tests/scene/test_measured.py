@@ -123,10 +123,16 @@ def test_units_in_the_heading_are_read(tmp_path, lines):
         assert found.gap == pytest.approx(given.gap, rel=1e-9, abs=1e-18)
 
 
+@pytest.mark.parametrize("line", ["x (millimetres), gap (microns)", "X_(mm);Z_(microns)", "mm,um", "x/mm, gap/um"])
+def test_units_in_words_are_read(tmp_path, line):
+    found = scene_of(tmp_path, *points(2e-7), WITHOUT, ("# trace 3, stylus of 2 um at 0.5 mm/s", line)).profile
+    assert found.measured.unit == pytest.approx((1e-3, 1e-6))
+
+
 @pytest.mark.parametrize(("line", "word"), [
     ("Unit: mm", "mm"), ("Length mm, Depth", "mm"), ("Length, Depth um", "um"), ("Length, Depth [um]", "um"),
     ("x [mm], gap", "mm"), ("Length mm, Depth um, raw", "mm"),
-    ("x (millimetres), gap (microns)", "millimetres"), ("x [mm], gap (um, raw)", "mm"), ("Length mil,Depth mil", "mil"),
+    ("x [mm], gap (um, raw)", "mm"), ("Length mil,Depth mil", "mil"),
     ("lengths in micrometers", "micrometers"), ("x inch gap inch", "inch"),
 ])  # fmt: skip
 def test_units_that_cannot_be_read_are_refused(tmp_path, monkeypatch, line, word):
@@ -167,6 +173,7 @@ def test_columns_in_the_wrong_order_are_refused(tmp_path):
 
 
 HALF = SCENE.replace("sigma = [-60e6, 60e6]", "")
+GIVEN = HALF.replace("smooth", 'centre = "given"\nsmooth')
 
 
 def half(apart, noise=2e-8, count=200, seed=0):
@@ -190,22 +197,79 @@ def test_one_half_of_an_even_gap_is_followed(tmp_path, noise):
 @pytest.mark.parametrize("noise", [0.0, 2e-8])
 def test_a_half_that_begins_beside_its_lowest_point_is_refused(tmp_path, apart, noise):
     """Mirrored at x = 0 it would be another profile: at 60 um before its lowest point a was 19 % too large."""
-    told = line_of(scene_of, tmp_path, *half(apart, noise), HALF)
+    told = line_of(scene_of, tmp_path, *half(apart, noise), GIVEN)
     place = float(told.partition("the lowest point is at about ")[2].split()[0])
     assert place == pytest.approx(-apart, abs=1e-8 + 200 * noise)
     assert "must be at 0 for one half of an even gap" in told
 
 
 def test_a_whole_trace_that_begins_at_zero_is_refused(tmp_path):
-    told = line_of(scene_of, tmp_path, *half(-1e-3), HALF)
+    told = line_of(scene_of, tmp_path, *half(-1e-3), GIVEN)
     assert "lowest point is at about 0.001 m" in told
+
+
+@pytest.mark.parametrize(("apart", "accuracy"), [(-60e-6, 2e-2), (-30e-6, 2e-2), (-200e-6, 2e-2), (-1e-3, 3e-3)])
+def test_a_trace_that_begins_at_zero_is_centred_at_its_lowest_point(tmp_path, apart, accuracy):
+    """By default: a short side belongs to an even gap, a long one is the other side of the trace. Noise of 20 nm moves
+    the lowest point by some um, as its copies tell."""
+    scene = scene_of(tmp_path, *half(apart), HALF)
+    known, found = scene.profile.measured, run(scene, "exact")["exact"]
+    hertz = run(scene.replace(profile={"kind": "hertz", "R": 0.01}), "exact")["exact"]
+    assert known.centre == pytest.approx(-apart, abs=1e-5)
+    assert scene.profile.even == (apart > -1e-3)
+    assert found.a == pytest.approx(hertz.a, rel=accuracy)
+    assert abs(found.a - hertz.a) < 4 * noise_of(scene).a * hertz.a
+    assert load_scene(tmp_path / "job.toml") == scene
+    exact = scene_of(tmp_path, *half(apart, 0.0), HALF)
+    assert run(exact, "exact")["exact"].a == pytest.approx(hertz.a, rel=1e-3)
+    (told,) = (line_of(scene_of, tmp_path, *half(30e-6), HALF),)  # its lowest point is not in the file
+    assert "must be at 0 for one half of an even gap" in told
+
+
+def trace_of(folder, data):
+    (folder / "pad.csv").write_bytes(data)
+    (folder / "job.toml").write_text(WITHOUT, "utf-8")
+    return load_scene(folder / "job.toml").profile
+
+
+def test_traces_as_instruments_write_them(tmp_path):
+    """Decimal commas, UTF-16, Latin-1, an index and values that are none, heights, a line of units."""
+    x, values = points(2e-7)
+    given = scene_of(tmp_path, x, values).profile
+    rows = [(f"{a * 1e3:.12g}", f"{b * 1e6:.12g}", f"{-b * 1e6:.12g}") for a, b in zip(x, values, strict=True)]
+
+    def text(head, *columns, separator=","):
+        return "\n".join([*head, *(separator.join(row[k] for k in columns) for row in rows)])
+
+    texts = {
+        "decimal commas": text(["x [mm];gap [µm]"], 0, 1, separator=";").replace(".", ",").encode("latin-1"),
+        "UTF-16": text(["x [mm]\tgap [um]"], 0, 1, separator="\t").encode("utf-16"),
+        "heights": text(["x [mm],z [um]"], 0, 2).encode(),
+        "units below": text(["Instrument 7, 0.5 mm/s", "", "x,depth", "mm,um"], 0, 1).encode(),
+        "index": ("no,x [mm],gap [um]\n400,0.1,NaN\n" + "\n".join(
+            f"{k},{row}" for k, row in enumerate(text([], 0, 1).split("\n")))).encode(),
+        "quotes": text(['"x [mm]","gap [um]"'], 0, 1).encode(),
+    }  # fmt: skip
+    for name, data in texts.items():
+        found = trace_of(tmp_path, data)
+        assert np.allclose(found.gap, given.gap, rtol=1e-6, atol=1e-12), name
+        assert found.measured.points == 400, name
+        assert np.sign(found.measured.unit[1]) == (-1 if name == "heights" else 1), name
+    three = text(["a [mm],b [um],c [um]"], 0, 1, 2).encode()
+    told = line_of(trace_of, tmp_path, three)
+    assert "3 columns, 'a [mm]', 'b [um]', 'c [um]': must have two, x and gap; or name both by profile.columns" in told
+    for columns in ([1, 2], ["a", "b"]):
+        (tmp_path / "job.toml").write_text(WITHOUT.replace("smooth", f"columns = {columns}\nsmooth"), "utf-8")
+        assert np.allclose(load_scene(tmp_path / "job.toml").profile.gap, given.gap, rtol=1e-6, atol=1e-12)
+    (tmp_path / "job.toml").write_text(WITHOUT.replace("smooth", "columns = [1, 9]\nsmooth"), "utf-8")
+    assert "profile.columns: 9: must be one of 'a [mm]'" in line_of(load_scene, tmp_path / "job.toml")
 
 
 @pytest.mark.fault
 def test_a_mirror_image_that_is_not_checked(tmp_path, monkeypatch):
     """Without the comparison of both fits the trace is taken, and a is wrong by a tenth and more."""
     monkeypatch.setattr("partialslip.scene.measured._refuse_mirror", lambda *_: None)
-    scene = scene_of(tmp_path, *half(-60e-6), HALF)
+    scene = scene_of(tmp_path, *half(-60e-6), GIVEN)
     found = run(scene, "exact")["exact"]
     hertz = run(scene.replace(profile={"kind": "hertz", "R": 0.01}), "exact")["exact"]
     assert found.a > 1.1 * hertz.a
@@ -323,8 +387,8 @@ def test_bad_keys_are_named(tmp_path, change, message):
 
 
 @pytest.mark.parametrize(("lines", "message"), [
-    (("1,2,3",), "pad.csv: line 1: must have two numbers, x and gap"),
-    (("1,2", "x"), "pad.csv: line 2: must have two numbers"),
+    (("1,2,3",), "pad.csv: line 1: must have 2 numbers, like line 2, or names"),
+    (("1,2", "x"), "pad.csv: line 2: must have 2 fields, like line 1"),
     (("1,2", "1e200,2"), "pad.csv: line 2: 1e200: must be zero or of a size from 1e-100 to 1e+100"),
     (("1,2", "2,1e400"), "pad.csv: line 2: 1e400: must be zero or of a size"),
     (("1,1e-98", "2,1"), "pad.csv: line 1: 1e-98: must be zero or of a size"),

@@ -3,8 +3,8 @@
 import csv
 import io
 
-import numpy as np
 import pytest
+from tables import sampled, written
 
 from partialslip import load_scene, run
 from partialslip.cli import main
@@ -19,18 +19,7 @@ def table(tmp_path, monkeypatch):
     """Write a table of tractions under a name, in an empty folder."""
     monkeypatch.chdir(tmp_path)
     exact = run(load_scene("hertz-shear"), "exact")["exact"]
-    x = np.linspace(-1.2, 1.2, 61) * exact.a
-
-    def write(name):
-        np.savetxt(
-            tmp_path / name,
-            np.column_stack([x, *exact.traction.at(x)[:2]]),
-            delimiter=",",
-            header="x,p,dq",
-            comments="",
-        )
-
-    return write
+    return lambda name: written(tmp_path / name, sampled(exact, 61, 1.2))
 
 
 def formulas(text):
@@ -72,6 +61,6 @@ def test_scores_of_a_file_with_an_odd_name(table, tmp_path, capsys, name):
 @pytest.mark.fault
 def test_formulas_in_tables_are_caught(monkeypatch):
     """Deliberate fault: text is written as it is, but for control characters."""
-    monkeypatch.setattr(module, "_plain", lambda cell: module.printable(cell) if isinstance(cell, str) else cell)
+    monkeypatch.setattr(module, "_safe_cell", lambda cell: module.printable(cell) if isinstance(cell, str) else cell)
     with pytest.raises(AssertionError):
         test_text_is_no_formula_and_numbers_are_numbers()

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tables import written
 
 from partialslip import load_scene
 from partialslip.codes.score.method import scored
@@ -18,8 +19,8 @@ def test_ends_where_shear_leaves_the_bound_smoothly(count, tmp_path):
     x = np.linspace(-1.1, 1.1, count)
     p = np.sqrt(np.maximum(1 - x**2, 0.0))
     room = np.maximum(1 - (x / c) ** 2, 0.0) ** 1.5
-    table = np.column_stack([x * 1e-3, p * 4e8, *[-np.sign(x) * f * p * (1 - room) * 4e8] * 2])
-    np.savetxt(tmp_path / "made.csv", table, delimiter=",", header="x,p,q1,q2", comments="")
-    found = scored(scene, read_tractions(tmp_path / "made.csv", scene), "made", "made.csv")
+    table = x * 1e-3, p * 4e8, *[-np.sign(x) * f * p * (1 - room) * 4e8] * 2
+    path = written(tmp_path / "made.csv", table, "x,p,q1,q2")
+    found = scored(scene, read_tractions(path, scene), "made", "made.csv")
     assert found.regime == "pressing"
     assert (found.m / 1e-3, found.n / 1e-3) == pytest.approx((c, c), abs=0.5 / count)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tables import written
 
 import partialslip
 from partialslip.codes.score.method import scored
@@ -20,10 +21,7 @@ def read_with(names, folder):
     p, p1 = (np.sqrt(np.maximum(1 - (x - at) ** 2, 0)) for at in (OFF, -OFF))
     q = 0.2 * np.minimum(p, p1)
     columns = {"x": x * a, "p": p * p0, "p1": p1 * p0, "q1": -q * p0, "q2": q * p0}
-    file = folder / "table.csv"
-    np.savetxt(
-        file, np.transpose([columns[name] for name in names]), delimiter=",", header=",".join(names), comments=""
-    )
+    file = written(folder / "table.csv", [columns[name] for name in names], ",".join(names))
     return scored(scene, read_tractions(file, scene), "table.csv", "table.csv")
 
 

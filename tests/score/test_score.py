@@ -7,6 +7,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+from tables import sampled, written
 
 import partialslip
 from partialslip import load_scene, run, score
@@ -23,17 +24,6 @@ FIXTURES = Path(__file__).parent
 def exact():
     scenes = {name: load_scene(name) for name in SCENES}
     return {name: (scene, run(scene, ["exact"]).results["exact"]) for name, scene in scenes.items()}
-
-
-def sampled(result, count, reach=1.1, shift=0.0):
-    """Points, off the middle by an odd amount, and the exact tractions there."""
-    x = reach * result.a * np.linspace(-1, 1.003, count) + shift
-    return np.column_stack([x, *result.traction.at(x)[:2]])
-
-
-def written(path, table, names="x,p,dq"):
-    np.savetxt(path, table, delimiter=",", header=names, comments="")
-    return path
 
 
 def errors(scene, path, **settings):
@@ -105,45 +95,20 @@ def test_all_ways_of_writing_the_same(exact, tmp_path):
         "X, x,p,q1,q2": (x, x, p, -dq / 2, dq / 2),
         "p,x,other,dq": (p, x, 0 * x, dq),
     }
-    ends = []
-    for names, columns in tables.items():
-        found, comparison = errors(scene, written(tmp_path / "t.csv", np.column_stack(columns), names))
-        ends.append((found.a, found.m, found.n, comparison.p, comparison.q))
+
+    def told(path, **settings):
+        found, comparison = errors(scene, path, **settings)
+        return found.a, found.m, found.n, comparison.p, comparison.q
+
+    ends = [told(written(tmp_path / "t.csv", columns, names)) for names, columns in tables.items()]
     order = np.random.default_rng(0).permutation(81)
     text = "\n".join(f"{a!r};\t{b!r} ; {c!r}  # point" for a, b, c in np.column_stack([x, p, dq])[order].tolist())
     (tmp_path / "t.csv").write_text(f"# a comment\n\n x; p; dq\n{text}\n", "utf-8")
-    found, comparison = errors(scene, tmp_path / "t.csv")
-    ends.append((found.a, found.m, found.n, comparison.p, comparison.q))
-    units = written(tmp_path / "t.csv", np.column_stack([x * 1e3, -p / 1e6, dq / 1e6]))
-    found, comparison = errors(scene, units, factors=(1e-3, -1e6, 1e6))
-    ends.append((found.a, found.m, found.n, comparison.p, comparison.q))
+    ends.append(told(tmp_path / "t.csv"))
+    units = written(tmp_path / "t.csv", (x * 1e3, -p / 1e6, dq / 1e6))
+    ends.append(told(units, factors=(1e-3, -1e6, 1e6)))
     for other in ends[1:]:
         assert other == pytest.approx(ends[0], rel=1e-9)
-
-
-@pytest.mark.parametrize("order", [1, 2])
-def test_nodal_forces(exact, tmp_path, order):
-    """Integrals of the tractions times shape functions, by quadrature in an angle; what they add up to is kept."""
-    scene, result = exact["hertz-large-tension"]
-    x = 1.1 * result.a * np.linspace(-1, 1, 81)
-    t = result.a * -np.cos((np.arange(20000) + 0.5) * np.pi / 20000)
-    weights = result.a * np.sin((np.arange(20000) + 0.5) * np.pi / 20000) * np.pi / 20000
-    cell = np.clip(np.searchsorted(x[::order], t) - 1, 0, 80 // order - 1)
-    s = (t - x[::order][cell]) / (order * (x[1] - x[0]))
-    shapes = [1 - s, s] if order == 1 else [(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)]
-    forces = np.zeros((2, 81))
-    for local, shape in enumerate(shapes):
-        for row, traction in zip(forces, result.traction.at(t)[:2], strict=True):
-            np.add.at(row, order * cell + local, shape * traction * weights)
-    path = written(tmp_path / "t.csv", np.column_stack([x, *forces]), "x,Fn,dFt")
-    found, comparison = errors(scene, path, order=order)
-    widths = np.diff(found.traction.cells)
-    assert found.traction.p @ widths == pytest.approx(scene.P, rel=1e-5)
-    assert max(comparison.a, comparison.m, comparison.n) < 0.15 * 2.2 / 80
-    assert comparison.p < 0.02
-    if order == 2:  # taken for elements of order 1
-        with pytest.raises(partialslip.InputError, match="another order"):
-            score(scene, path)
 
 
 @pytest.mark.parametrize("ending", ["vtu", "vtk", "xdmf"])
@@ -183,33 +148,25 @@ def test_calculix(ending, off):
     assert any("dq may be of the opposite sign" in note for note in turned.notes)
 
 
+def times(*factors):
+    return lambda table, _: table * factors
+
+
 MISTAKES = {
     "shifted by half a cell": (lambda t, h: t + np.array([h / 2, 0, 0]), "left right p", "middle is at x = 0.0034 a"),
-    "q of the other sign": (
-        lambda t, _: t * [1, 1, -1],
-        "q dQ",
-        "dq may be of the opposite sign: correct with --factors 1,1,-1",
-    ),
-    "half a cycle": (lambda t, _: t * [1, 1, 0.5], "q dQ", "dq may be of half a cycle: correct with --factors 1,1,2"),
+    "q of the other sign": (times(1, 1, -1), "q dQ", "dq may be of the opposite sign: correct with --factors 1,1,-1"),
+    "half a cycle": (times(1, 1, 0.5), "q dQ", "dq may be of half a cycle: correct with --factors 1,1,2"),
     "without the right half": (lambda t, _: t[: len(t) // 2], "a p q P", "of the scene's P"),
     "a hole": (lambda t, _: np.delete(t, slice(24, 52), axis=0), "p q", ""),
     "p and q exchanged": (lambda t, _: np.column_stack([t[:, 0], t[:, 2], t[:, 1]]), "p q P dQ", "of the scene's P"),
-    "mirrored": (
-        lambda t, _: t * [-1, 1, 1],
-        "m n q",
-        "on the other side: is the sign of x, or of the tension, reversed?",
-    ),
-    "pressure scaled": (lambda t, _: t * [1, 1.1, 1], "p P", "p adds up to 1.1 of the scene's P"),
-    "shear scaled": (lambda t, _: t * [1, 1, 1.05], "q dQ", "dq adds up to 1.05 of the scene's dQ"),
-    "less friction": (
-        lambda t, _: t * [1, 1, 0.987],
-        "q",
-        "|dq|/(2 p) is 0.2961 in the slip zones, but the scene's f",
-    ),
-    "in MPa": (lambda t, _: t * [1, 1e-6, 1e-6], "p q P dQ", "MPa: correct with --factors 1,1e+06,1e+06"),
+    "mirrored": (times(-1, 1, 1), "m n q", "on the other side: is the sign of x, or of the tension, reversed?"),
+    "pressure scaled": (times(1, 1.1, 1), "p P", "p adds up to 1.1 of the scene's P"),
+    "shear scaled": (times(1, 1, 1.05), "q dQ", "dq adds up to 1.05 of the scene's dQ"),
+    "less friction": (times(1, 1, 0.987), "q", "|dq|/(2 p) is 0.2961 in the slip zones, but the scene's f"),
+    "in MPa": (times(1, 1e-6, 1e-6), "p q P dQ", "MPa: correct with --factors 1,1e+06,1e+06"),
     # no point lies within the contact, so that nothing is known of p and q there
-    "in mm and MPa": (lambda t, _: t * [1e3, 1e-6, 1e-6], "a", "correct with --factors 0.001,1e+06,1e+06"),
-    "in mm": (lambda t, _: t * [1e3, 1, 1], "a", "x may be in mm: correct with --factors 0.001,1,1"),
+    "in mm and MPa": (times(1e3, 1e-6, 1e-6), "a", "correct with --factors 0.001,1e+06,1e+06"),
+    "in mm": (times(1e3, 1, 1), "a", "x may be in mm: correct with --factors 0.001,1,1"),
 }
 
 
@@ -290,12 +247,8 @@ def test_on_the_command_line(exact, tmp_path, monkeypatch, capsys):
     assert "$a_[red]$.csv" in printed
     assert "no bars: none were asked for" in printed
     folder = tmp_path / "results" / "hertz-shear-$a_[red]$"
-    assert sorted(path.name for path in folder.iterdir()) == [
-        place.REQUEST_NAME,
-        "report.html",
-        "results.json",
-        "tractions.csv",
-    ]
+    files = {place.REQUEST_NAME, "report.html", "results.json", "tractions.csv"}
+    assert {path.name for path in folder.iterdir()} == files
     assert "p/p0, $a_[red]$.csv" in (folder / "report.html").read_text("utf-8")
     record = json.loads((folder / "results.json").read_text("utf-8"))
     assert record["comparison"]["$a_[red]$.csv"]["errors"]["m"] < 1e-6

@@ -7,6 +7,7 @@ import meshio
 import numpy as np
 import pytest
 import varying
+from tables import written
 
 from partialslip.cli import main
 from partialslip.codes.score import calculix
@@ -30,8 +31,7 @@ def table(scene=SCENE, count=101):
 
 
 def scored(path, content, names="x,p,p1,dq", scene=SCENE):
-    np.savetxt(path, content, delimiter=",", header=names, comments="")
-    found = method.scored(scene, read_tractions(path, scene), path.name, str(path))
+    found = method.scored(scene, read_tractions(written(path, content, names), scene), path.name, str(path))
     return found, compare(found, varying.solved(scene), scene, None)
 
 
@@ -64,7 +64,7 @@ def test_point_data(tmp_path):
     assert read_tractions(tmp_path / "t.vtu", SCENE).p1 == pytest.approx(p1)
     del mesh.point_data["p1"]
     meshio.write(tmp_path / "t.vtu", mesh)
-    with pytest.raises(InputError, match="must have p and p1, and one of dq"):
+    with pytest.raises(InputError, match="must include p1, p at load point 1"):
         read_tractions(tmp_path / "t.vtu", SCENE)
 
 
@@ -78,13 +78,13 @@ def test_calculix_at_both_load_points():
 
 def test_what_is_missing_or_too_much_is_named(tmp_path):
     path, constant = tmp_path / "t.csv", SCENE.replace(load={"P": SCENE.P})
-    np.savetxt(path, table()[:, [0, 1, 3]], delimiter=",", header="x,p,dq", comments="")
+    written(path, table()[:, [0, 1, 3]])
     with pytest.raises(InputError, match=r"must include p1, p at load point 1.*--columns p1="):
         read_tractions(path, SCENE)
     assert read_tractions(path, SCENE, chosen={"x": "x", "p": "p", "p1": "p", "dq": "dq"}).p1 is not None
     with pytest.raises(InputError, match="--columns p1: must be left out"):
         read_tractions(path, constant, chosen={"x": "x", "p": "p", "p1": "p", "dq": "dq"})
-    np.savetxt(path, table() * [1, 1, 0, 1], delimiter=",", header="x,p,p1,dq", comments="")
+    written(path, table() * [1, 1, 0, 1], "x,p,p1,dq")
     with pytest.raises(InputError, match="p1 > 0 at 0 points"):
         read_tractions(path, SCENE)
     assert read_tractions(path, constant).p1 is None
@@ -92,10 +92,8 @@ def test_what_is_missing_or_too_much_is_named(tmp_path):
 
 def test_half_of_the_change_is_not_the_shear_at_a_load_point(tmp_path):
     """Unless the loads are fully reversed, as those of the same scene with constant P are."""
-    np.savetxt(tmp_path / "t.csv", table() * [1, 1, 1, 0.5], delimiter=",", header="x,p,p1,q", comments="")
-    found, reversed_ = (
-        read_tractions(tmp_path / "t.csv", scene) for scene in (SCENE, SCENE.replace(load={"P": SCENE.P}))
-    )
+    path = written(tmp_path / "t.csv", table() * [1, 1, 1, 0.5], "x,p,p1,q")
+    found, reversed_ = (read_tractions(path, scene) for scene in (SCENE, SCENE.replace(load={"P": SCENE.P})))
     assert found.q2 is None
     assert np.array_equal(reversed_.q2, found.dq / 2)
 

@@ -11,7 +11,7 @@ import partialslip
 from partialslip.cli.cost import _answer, _left_out, _progress
 from partialslip.study import cost
 from partialslip.study.batch.job import Job, ProcessCost, solve_apart
-from partialslip.study.batch.job import _known as known
+from partialslip.study.batch.job import _timing_settled as known
 from partialslip.study.batch.ledger import Ledger
 from partialslip.study.cost import phases_svg
 

@@ -43,7 +43,7 @@ def test_the_ladder_measures_the_errors_of_the_meshes(monkeypatch):
         asked.append(size)
         return result(a=1 + size / 10, of=traction(p=1 + size / 10))
 
-    monkeypatch.setattr(ladder, "_solve", solved)
+    monkeypatch.setattr(ladder, "_fem_result", solved)
     found = {each.quantity: each for each in climb(SCENE, EXACT)}
     assert asked == list(SIZES)
     assert set(found) == {"a", "m", "n", "p", "q"}

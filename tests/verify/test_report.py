@@ -163,12 +163,12 @@ def test_a_missed_bar_cannot_be_overlooked(tmp_path, monkeypatch):
     """Deliberate fault: solvers that stop at a residual of 1e-3 f p0. The missed bar
     is in the heading, first in the table, and at the scene."""
 
-    solve = case._solve
+    solve = case._result_or_failure
 
     def stopped_early(one, method):
         return replace(solve(one, method), certificate={"kkt": 1e-3})
 
-    monkeypatch.setattr(case, "_solve", stopped_early)
+    monkeypatch.setattr(case, "_result_or_failure", stopped_early)
     verified(tmp_path)
     text = page(tmp_path)
     assert re.search(r'<div class="verdict">[1-9]\d* of \d+ verdicts missed</div>', text)

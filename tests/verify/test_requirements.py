@@ -179,7 +179,7 @@ def test_a_case_is_solved_by_what_it_needs(monkeypatch):
         asked.append(method)
         return EXACT if method == "exact" else SOUND
 
-    monkeypatch.setattr(module, "_solve", solved)
+    monkeypatch.setattr(module, "_result_or_failure", solved)
     assert missed(run_case(CASE)) == set()
     assert asked == ["exact", "fem"]
     assert list(solve_case(replace(CASE, reference=""))) == ["fem"]

@@ -11,8 +11,10 @@ from partialslip.cli.common import (
     add_pdf,
     check_output,
     columns_of,
+    factors_of,
     print_written,
     results_folder,
+    where_of,
 )
 from partialslip.tools.errors import InputError
 
@@ -65,7 +67,8 @@ def add(commands: Commands) -> None:
                              examples=["partialslip benchmark read PS-02 tractions.csv -o my-answers",
                                        "partialslip benchmark read PS-05 job.frd -o my-answers"])  # fmt: skip
     reads.add_argument("problem", metavar="PROBLEM", help="number of the problem")
-    reads.add_argument("file", metavar="FILE", help="table of x, p and q, or CalculiX's .frd")
+    reads.add_argument("files", metavar="FILE", nargs="+",
+                       help="table of x, p and q, or CalculiX's .frd; or one file for each load point")  # fmt: skip
     reads.add_argument("-o", "--out", metavar="DIR", required=True, help="folder of the answers of one code")
     reads.add_argument("--code", metavar="NAME",
                        help="name of the code, for meta.toml in a new folder (default: name of the table)")  # fmt: skip
@@ -91,7 +94,7 @@ def add(commands: Commands) -> None:
                               examples=["partialslip benchmark check my-answers",
                                         "partialslip benchmark check benchmarks/submissions/my-code"])  # fmt: skip
     checks.add_argument("folder", metavar="FOLDER", help="folder with the answers")
-    checks.set_defaults(command=_check)
+    checks.set_defaults(command=_check_submission)
 
     builds = parts.add_parser("build", help="write the book",
                               description="Write the book of problems, book.html and book.pdf, a zip of plain data, "
@@ -138,13 +141,19 @@ def _run(options: argparse.Namespace) -> int:
 def _read(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
     from partialslip.verify.benchmark.problem import numbered
-    from partialslip.verify.benchmark.submission import add_answer
-    from partialslip.verify.benchmark.tables import answer_from
+    from partialslip.verify.benchmark.submission import Answer, add_answer
+    from partialslip.verify.benchmark.tables import read_table
 
     problem, named = numbered(options.problem), options.code is not None
-    code = options.code if named else Path(options.file).stem
-    answer = answer_from(problem, options.file, columns_of(options.columns))
-    print_written(add_answer(problem.number, answer, options.out, code, named, options.force), output())
+    code = options.code if named else Path(options.files[0]).stem
+    table = read_table(
+        problem, options.files, columns_of(options.columns), where_of(options.where), factors_of(options.factors)
+    )
+    for note in table.notes:
+        output().print(note, soft_wrap=True, markup=False)
+    print_written(
+        add_answer(problem.number, Answer(dict(table.values)), options.out, code, named, options.force), output()
+    )
     return 0
 
 
@@ -155,7 +164,7 @@ def _score(options: argparse.Namespace) -> int:
     return _graded(read_submission(options.folder, read_problems()), chosen_problems(options.problems))
 
 
-def _check(options: argparse.Namespace) -> int:
+def _check_submission(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
     from partialslip.tools.errors import one_line
     from partialslip.verify.benchmark import handed_in, read_problems

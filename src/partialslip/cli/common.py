@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import partialslip
 from partialslip.tools.errors import InputError
@@ -59,10 +59,20 @@ def add_method(parser: argparse.ArgumentParser, text: str, **more: Any) -> None:
     parser.add_argument("--method", help=argparse.SUPPRESS, default=argparse.SUPPRESS, **more)  # until 2.0
 
 
+_T = TypeVar("_T")
+
+
 def add_columns(parser: argparse.ArgumentParser) -> None:
-    """Add ``--columns``, which :func:`columns_of` parses."""
+    """Add ``--factors``, ``--columns`` and ``--where``, which :func:`factors_of` and so on parse."""
+    parser.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
+                        help="multiply x, p and q by these factors, after the units of the scene or of the columns: "
+                        "1e-3,1e6,1e6 for mm and MPa in an SI scene; -1 changes the sign")  # fmt: skip
     parser.add_argument("--columns", metavar="NAMES",
-                        help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1")  # fmt: skip
+                        help="columns of x, p and dq by name or number (from 1): x=X,p=CPRESS,dq=S2-S1, "
+                        "or q2=CSHEAR1 for the shear at load point 2")  # fmt: skip
+    parser.add_argument("--where", metavar="COLUMN=VALUE", action="append",
+                        help="keep the rows in which a column has this value: surface=FLAT; step=A,B are those of load "
+                        "points 1 and 2")  # fmt: skip
 
 
 def columns_of(text: str | None) -> dict[str, str] | None:
@@ -73,6 +83,34 @@ def columns_of(text: str | None) -> dict[str, str] | None:
     if not all(name.strip() and made.strip() for name, _, made in pairs):
         raise InputError(f"--columns {text}: must be pairs NAME=COLUMN, for example x=X,p=CPRESS,dq=S2-S1")
     return {name.strip(): made.strip() for name, _, made in pairs}
+
+
+def where_of(options: list[str] | None) -> dict[str, str]:
+    """Parse the values of ``--where``."""
+    pairs = [option.partition("=") for option in options or ()]
+    for option, (name, _, value) in zip(options or (), pairs, strict=True):
+        if not name.strip() or not value.strip():
+            raise InputError(f"--where {option}: must be COLUMN=VALUE, for example surface=FLAT")
+    return {name.strip(): value.strip() for name, _, value in pairs}
+
+
+def factors_of(text: str) -> tuple[float, float, float]:
+    """Parse the value of ``--factors``."""
+    x, p, q = numbers_of(text, float, "--factors", "three numbers, for example 1e-3,1e6,1e6", 3)
+    if not all(0 < abs(factor) < math.inf for factor in (x, p, q)):
+        raise InputError(f"--factors {text}: must be finite and not zero")
+    return x, p, q
+
+
+def numbers_of(text: str, kind: Callable[[str], _T], option: str, wanted: str, *counts: int) -> tuple[_T, ...]:
+    """Parse the value of an ``option``: numbers, as ``wanted``, of which there must be one of ``counts``."""
+    try:
+        numbers = tuple(kind(word) for word in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) not in counts:
+        raise InputError(f"{option} {text}: must be {wanted}")
+    return numbers
 
 
 def add_pdf(parser: argparse.ArgumentParser, told: str = "also write the report as report.pdf, A4") -> None:
@@ -205,7 +243,8 @@ def request(
     usual: Callable[[], Mapping[str, object]] = dict,
     constants: bool = False,
 ) -> "Request":
-    """Return what the command is asked for: what must be the same for files to be overwritten.
+    """Return the request of a command, by which result files are recognised: files are overwritten only by the same
+    request.
 
     Parameters
     ----------
@@ -214,10 +253,10 @@ def request(
     scene : Scene or None
         Scene as the user gave it.
     known : mapping
-        By option: an input file, whose content counts, or a setting as the command understands it.
+        By option, in place of its text: an input file, which counts by its content, or a setting that was interpreted.
     usual : callable
-        ``usual()``: what of ``known`` the command takes without options, where it is not the default of the parser, and
-        what the usual folder is named after. Called only where it decides.
+        ``usual()``: the values of ``known`` without options, where they differ from the parser's defaults. They name
+        the default folder. Called only without ``--out``.
     constants : bool
         Whether constants of fatigue criteria change the results.
     """
@@ -231,7 +270,7 @@ def request(
         return shown(key, value, units)
 
     def data(of: "Scene | None", settings: Mapping[str, object]) -> dict[str, Any]:
-        return {"command": command, "scene": _content(of, constants), "settings": _plain(settings)}
+        return {"command": command, "scene": _content(of, constants), "settings": _given_settings(settings)}
 
     given = {key: value for key, value in vars(options).items() if key not in _NEUTRAL}
     asked = data(scene, {**given, **known})
@@ -257,7 +296,7 @@ def _content(scene: "Scene | None", constants: bool) -> dict[str, Any]:
     return {key: value for key, value in scene_content(scene).items() if key != "title"} | more
 
 
-def _plain(settings: Mapping[str, object]) -> dict[str, object]:
+def _given_settings(settings: Mapping[str, object]) -> dict[str, object]:
     """Return ``settings`` that are given, as plain data."""
     from partialslip.tools.output.place import content
 

@@ -112,9 +112,9 @@ def _evaluated(
     front = cost.front(found)
     best = {id(point) for point in front}
     head = ["series (* on the front)", "setting", "m, in a", "n, in a", "q, norm", "unknowns", "CPU s", "process"]
-    rows = [_row(point, id(point) in best) for point in [*found, *peers]]
+    rows = [_cost_row(point, id(point) in best) for point in [*found, *peers]]
     slopes = [
-        [each, *(_number(value, ".2f") for value in of.values())]
+        [each, *(_formatted(value, ".2f") for value in of.values())]
         for each, of in cost.slopes(found).items()
         if not math.isnan(of["CPU"])
     ]
@@ -131,7 +131,7 @@ def _evaluated(
         tables: list[str | Section] = [replace(section, title="") for section in sections]
     else:
         beaten = sum(bool(point.errors) for point in found) - len(front)  # exact is what errors are measured against
-        shown = [_row(point, False) for point in front]
+        shown = [_cost_row(point, False) for point in front]
         tables = [
             Section("", headings=["series", *head[1:]], rows=shown, words=(1,)),
             f"{beaten} other settings cost more for the error: --verbose, or cost.csv",
@@ -169,14 +169,14 @@ def _progress(done: int, total: int, setting: str, rest: float) -> str:
     return f"setting {done + 1} of {total}: {setting}{'' if math.isinf(rest) else f', {rest:.0f} CPU s left'}"
 
 
-def _row(point: "CostPoint", front: bool) -> list[str]:
-    errors = [_number(point.errors.get(key, math.nan), ".1e") for key in ("m", "n", "q")]
+def _cost_row(point: "CostPoint", front: bool) -> list[str]:
+    errors = [_formatted(point.errors.get(key, math.nan), ".1e") for key in ("m", "n", "q")]
     unknowns = f"{point.counts['dofs']:,}" if "dofs" in point.counts else ""
     costs = [f"{point.cpu_s:.3g}", f"{point.process_s:.2f}"]
     return [point.series + (" *" if front else ""), point.setting, *errors, unknowns, *costs]
 
 
-def _number(value: float, form: str) -> str:
+def _formatted(value: float, form: str) -> str:
     return "" if math.isnan(value) else format(value, form)
 
 

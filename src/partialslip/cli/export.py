@@ -59,12 +59,12 @@ def _export(options: argparse.Namespace) -> int:
     if options.out == "":
         raise InputError("--out '': must name a file")
     size, growth, stiffer = (
-        _number(getattr(options, name), f"--{name}", least, most)
+        _number_within(getattr(options, name), f"--{name}", least, most)
         for name, least, most in (("size", 1e-4, 0.5), ("growth", 0.01, 1.0), ("stiffer", 1.0, 1e4))
     )
-    width = None if options.width is None else _number(options.width, "--width", 4, 1e6)
-    ends = [_number(end, "--ends", -1.1, 1.1) for end in options.ends.split(",")] if options.ends else []
-    fine = None if options.fine is None else _number(options.fine, "--fine", 1e-6, size)
+    width = None if options.width is None else _number_within(options.width, "--width", 4, 1e6)
+    ends = [_number_within(end, "--ends", -1.1, 1.1) for end in options.ends.split(",")] if options.ends else []
+    fine = None if options.fine is None else _number_within(options.fine, "--fine", 1e-6, size)
     scene = partialslip.load_scene(options.scene, options.overrides)
     write = export(
         scene,
@@ -85,7 +85,7 @@ def _export(options: argparse.Namespace) -> int:
     return 0
 
 
-def _number(text: str | float, option: str, least: float, most: float) -> float:
+def _number_within(text: str | float, option: str, least: float, most: float) -> float:
     try:
         number = float(text)
     except ValueError:

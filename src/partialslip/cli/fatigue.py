@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import partialslip
 from partialslip.cli.common import Commands, add_method, add_out, add_pdf, add_scene, check_output, naming
 from partialslip.cli.findings import Findings, present
-from partialslip.run.methods import REFERENCES
 from partialslip.tools.errors import InputError
+from partialslip.tools.methods import REFERENCES
 
 if TYPE_CHECKING:
     from partialslip.report.page import Section
@@ -84,7 +84,7 @@ def _fatigue(options: argparse.Namespace) -> int:
 
 
 def _check_method(scene: "Scene", method: str | None) -> None:
-    """Raise InputError if ``method`` solves unlike bodies, but finds no stresses in them."""
+    """Raise InputError if ``method`` solves dissimilar bodies, but finds no stresses in them."""
     if method not in (None, "fem") and not scene.material.alike:
         raise InputError(f"--with {method}: must be fem for unlike materials; {method} finds no stresses in them")
 

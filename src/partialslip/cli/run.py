@@ -23,9 +23,9 @@ from partialslip.cli.common import (
     print_outcome,
     seconds,
 )
-from partialslip.run.methods import METHODS
 from partialslip.tools.allowance import Allowance
 from partialslip.tools.errors import InputError
+from partialslip.tools.methods import METHODS
 
 if TYPE_CHECKING:
     from partialslip.result import Result
@@ -177,11 +177,11 @@ def _reached(fem: "Result") -> str:
     errors = {key: error_of(fem, key, fem.method) for key in keys}
     known = {key: error for key, error in errors.items() if math.isfinite(error)}
     lost = [key for key in keys if key not in known]
-    parts = [f"{_listed(known)} known to {max(known.values()):.1e} a"] if known else []
-    return "fem: " + ", ".join([*parts, *([f"no error estimate of {_listed(lost)}"] if lost else [])])
+    parts = [f"{_joined_by_and(known)} known to {max(known.values()):.1e} a"] if known else []
+    return "fem: " + ", ".join([*parts, *([f"no error estimate of {_joined_by_and(lost)}"] if lost else [])])
 
 
-def _listed(keys: Iterable[str]) -> str:
+def _joined_by_and(keys: Iterable[str]) -> str:
     *before, last = keys
     return " and ".join(filter(None, [", ".join(before), last]))
 

@@ -2,9 +2,7 @@
 
 import argparse
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
 
 import partialslip
 from partialslip.cli.common import (
@@ -16,15 +14,16 @@ from partialslip.cli.common import (
     add_verbose,
     check_output,
     columns_of,
+    factors_of,
     folder_if_wanted,
+    numbers_of,
     origin,
     print_outcome,
+    where_of,
 )
-from partialslip.run.methods import REFERENCES
 from partialslip.tools.bars import LARGEST, Asked, asked
 from partialslip.tools.errors import InputError
-
-_T = TypeVar("_T")
+from partialslip.tools.methods import REFERENCES
 
 
 def add(commands: Commands) -> None:
@@ -39,18 +38,16 @@ def add(commands: Commands) -> None:
             "partialslip score fretting-aluminium --template > mine.csv",
             "partialslip score fretting-aluminium mine.csv --bar 1e-2",
             "partialslip score hertz-shear job.frd --factors 1e-3,1e6,1e6",
+            "partialslip score hertz-shear first.rpt second.rpt --where part=FLAT-1",
         ],
         failure="a bar missed",
         unjudged="headline quantities not judged, with --bar",
     )
     add_scene(scores)
-    scores.add_argument("file", metavar="FILE", nargs="?",
+    scores.add_argument("files", metavar="FILE", nargs="*", default=[],
                         help="tractions: a table (.csv, .txt, .tsv, .rpt), .frd or .dat, or .vtu, .vtk, .xdmf, .xmf, "
-                        ".msh, .med, .e, .exo or .ex2")  # fmt: skip
+                        ".msh, .med, .e, .exo or .ex2; or one file for each load point")  # fmt: skip
     scores.add_argument("--template", action="store_true", help="print a table to fill in, and nothing else")
-    scores.add_argument("--factors", metavar="X,P,Q", default="1,1,1",
-                        help="multiply x, p and q by these factors, after the units of the scene or of the columns: "
-                        "1e-3,1e6,1e6 for mm and MPa in an SI scene; -1 changes the sign")  # fmt: skip
     add_columns(scores)
     scores.add_argument("--centre", choices=("given", "auto"), default="given",
                         help="auto puts x = 0 in the middle of the contact (default: given)")  # fmt: skip
@@ -77,23 +74,21 @@ def add(commands: Commands) -> None:
 
 def _score(options: argparse.Namespace) -> int:
     check_output(options)
-    factors = _numbers(options.factors, float, "--factors", "three numbers, for example 1e-3,1e6,1e6", 3)
-    at = () if options.at is None else _numbers(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
+    factors = factors_of(options.factors)
+    at = () if options.at is None else numbers_of(options.at, int, "--at", "two whole numbers, for example 3,4", 2)
     bar = None if options.bar is None else _bar(options.bar)
-    if not all(0 < abs(factor) < float("inf") for factor in factors):
-        raise InputError(f"--factors {options.factors}: must be finite and not zero")
     if options.order not in ("1", "2"):
         raise InputError(f"--order {options.order}: must be 1 or 2")
     scene = partialslip.load_scene(options.scene, options.overrides)
     if options.template:
-        if options.file is not None:
-            raise InputError(f"--template {options.file}: must go without a file: remove {options.file}")
+        if options.files:
+            raise InputError(f"--template {options.files[0]}: must go without a file: remove {options.files[0]}")
         from partialslip.codes.score.csvfile import csv_template
         from partialslip.halfplane import contact
 
         sys.stdout.write(csv_template(scene, contact(scene).a))
         return 0
-    if options.file is None:
+    if not options.files:
         raise InputError("FILE: missing: must be a file with tractions; --template prints a table to fill in")
 
     from partialslip.cli.consoles import working
@@ -101,55 +96,52 @@ def _score(options: argparse.Namespace) -> int:
     from partialslip.report import write_run
     from partialslip.run.judge.reference import reference
 
-    file = Path(options.file)
-    check(file)  # before a folder is created
-    beside = file.with_suffix(".frd")  # has the mesh of a .dat
-    mesh = beside if file.suffix.lower() == ".dat" and beside.is_file() else None
-    known = {"file": file, "mesh": mesh, "factors": factors, "reference": options.reference or reference(scene).method}
+    files = [Path(file) for file in options.files]
+    for file in files:
+        check(file)  # before a folder is created
+    beside = files[0].with_suffix(".frd")  # has the mesh of a .dat
+    mesh = beside if files[0].suffix.lower() == ".dat" and beside.is_file() else None
+    known = {f"file{k or ''}": file for k, file in enumerate(files)} | {
+        "files": None,
+        "mesh": mesh,
+        "factors": factors,
+        "reference": options.reference or reference(scene).method,
+    }
 
     def usual() -> dict[str, object]:
         method = known["reference"] if options.reference is None else reference(scene).method
         return known | {"factors": (1, 1, 1), "reference": method}
 
-    name = f"{scene.name}-{file.stem}"
+    name = f"{scene.name}-{'-'.join(file.stem for file in files)}"
     with (
         folder_if_wanted(options, "score", name, scene, known, usual) as (folder, elsewhere),
         working(scene.name) as tell,
     ):
         outcome = partialslip.score(
             scene,
-            file,
+            files,
             bar=bar,
             reference=options.reference,
-            factors=(factors[0], factors[1], factors[2]),
+            factors=factors,
             order=int(options.order),
             at=(at[0], at[1]) if at else None,
             columns=columns_of(options.columns),
+            where=where_of(options.where),
             centre=options.centre,
             kind=options.kind,
             progress=tell,
         )
-        files = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
-    return print_outcome(outcome, options, files, elsewhere=elsewhere)
+        written = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
+    return print_outcome(outcome, options, written, elsewhere=elsewhere)
 
 
 def _bar(text: str) -> Asked:
     """Parse the value of ``--bar``."""
     wanted = f"one number, or three for contact, stick zone and tractions, > 0 and <= {LARGEST:g}"
-    numbers = _numbers(text, float, "--bar", wanted, 1, 3)
+    numbers = numbers_of(text, float, "--bar", wanted, 1, 3)
     try:
         found = asked(numbers)
     except InputError:
         raise InputError(f"--bar {text}: must be {wanted}") from None
     assert found
     return found
-
-
-def _numbers(text: str, kind: Callable[[str], _T], option: str, wanted: str, *counts: int) -> tuple[_T, ...]:
-    try:
-        numbers = tuple(kind(word) for word in text.split(","))
-    except ValueError:
-        numbers = ()
-    if len(numbers) not in counts:
-        raise InputError(f"{option} {text}: must be {wanted}")
-    return numbers

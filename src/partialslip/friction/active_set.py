@@ -40,8 +40,7 @@ class Solution:
     turn: float = 0.0
 
     def spread(self, where: Indices, count: int) -> "Solution":
-        """The solution at ``count`` members, of which those with the indices ``where`` have been solved; the others
-        have no forces."""
+        """Solution at ``count`` members from that at the members ``where`` (indices); zero forces at all others."""
         x, rest, residual = (spread(values, where, count) for values in (self.x, self.rest, self.residual))
         return replace(self, x=x, rest=rest, residual=residual)
 
@@ -291,7 +290,7 @@ class _BlockPivoting:
             if line.slope <= 0:
                 return shift
             shift = (total - line.total) / line.slope
-            _, _, wanted = self._at(shift)
+            _, _, wanted = self._solution_and_sides(shift)
             wrong = int(np.count_nonzero(wanted != self._side))
             if wrong < fewest:
                 fewest, chances = wrong, _CHANCES
@@ -320,7 +319,7 @@ class _BlockPivoting:
         """Minimiser x (n,) at the ``shift``, r = C x - g - shift (n,), and the derivative of sum(x) by the shift."""
         fewest, chances = len(self._g) + 1, _CHANCES
         while True:
-            x, r, wanted = self._at(shift)
+            x, r, wanted = self._solution_and_sides(shift)
             wrong = np.flatnonzero(wanted != self._side)
             if len(wrong) == 0:
                 return x, r, self._solutions().slope
@@ -368,7 +367,7 @@ class _BlockPivoting:
             sides = self._wanted(at, r, shift)
             self._change(sides)
             slope = self._solutions().slope
-            x, new, wanted = self._at(shift)
+            x, new, wanted = self._solution_and_sides(shift)
             if np.array_equal(wanted, sides):
                 return x, new, slope
             free, way = sides == 0, x - at
@@ -393,7 +392,7 @@ class _BlockPivoting:
         return above.astype(np.int8) - below
 
     def _noise(self, x: Array, shift: float) -> Array:
-        """Rounding error of r."""
+        r"""Rounding error of the residual r = C x - g - shift: 4 eps (C_ii sum \|x\| + \|g\| + \|shift\|), (n,)."""
         return 4 * _EPS * (self.diagonal * np.abs(x).sum() + np.abs(self._g) + abs(shift))
 
     def _turn(self, wanted: Sides) -> None:
@@ -405,7 +404,7 @@ class _BlockPivoting:
             self._side, self._line, self._tried = sides, None, None
             self.changes += 1
 
-    def _at(self, shift: float) -> tuple[Array, Array, Sides]:
+    def _solution_and_sides(self, shift: float) -> tuple[Array, Array, Sides]:
         """x of the present sides at the ``shift``, r, and the sides that they require."""
         if self._tried is None or self._tried[0] != shift:
             x, r = self._solutions().at(shift)

@@ -31,6 +31,7 @@ _SAMPLES = 32  # accuracy: points in each other cell, between which the force is
 
 
 def _alone(forces: Array) -> Array:
+    """Forces on cells of which each has one node."""
     return forces
 
 
@@ -63,7 +64,7 @@ class ContactLine:
     left_of: Callable[[Array, Array], Array] | None = None
 
     def on(self, nodes: Indices) -> "ContactLine":
-        """The line on which ``nodes`` (indices) alone bear forces."""
+        """Contact line on which the ``nodes`` (indices) alone carry forces."""
         whole, count = self.cell_forces, len(self.x)
         return replace(
             self,
@@ -142,8 +143,8 @@ def common_ends(ends: Sequence[Ends]) -> Ends:
 
 
 def passing(kinks: Sequence[float], stick: StickInterval | None, history: History | None) -> tuple[float, ...]:
-    """Those ``kinks`` that neither q1 nor q2 has: out of phase these are -f p and f p beside the stick zone, where the
-    kinks of single load points pass by, if the pressure is constant. Kinks in the stick zone last."""
+    """``kinks`` of q at single load points that q1 and q2 do not have, kinks in the stick zone last: out of phase at
+    constant pressure, q1 and q2 are -f p and f p beside the stick zone, and smooth."""
     if not stick or not history or history.path.in_phase or history.path.presses_anew:
         return ()
     return tuple(kink for kink in kinks if not stick.left < kink < stick.right)

@@ -1,6 +1,6 @@
 """Coulomb friction at constant pressure: a path of straight legs, each exact in time.
 
-Where slip turns round on a leg, it is followed event by event
+Where slip reverses on a leg, it is followed event by event
 (:class:`partialslip.friction.path_following.Follower`). Where every node that slips at the end of the leg is pushed
 that way from the beginning and still slips that way at the end, and no other node slips on the way, one step leads to
 what gradual loading leads to: the conditions of the step are then those of gradual loading. This is decided by the
@@ -59,7 +59,7 @@ def march(
     near : (n,) int8 array, optional
         Where the search for the sides after the first loading begins.
     few : int
-        Nodes that may have the wrong sign where slip does not turn round: beside the ends of slip zones some have in
+        Nodes that may have the wrong sign where slip does not reverse: beside the ends of slip zones some have in
         finite elements of high order, whose compliance is not that of springs. One step is then taken all the same, if
         the loads are in phase. At the end of the leg these nodes are beside the ends of the contact; beside the stick
         zone a single one that has slipped shows that its end takes points back.
@@ -107,7 +107,7 @@ class _Contact(Legs):
         if not change.any():
             return done(resting(start))
         if not self._followed:
-            found = self._one_step(start, float(load[0]), change, self._known)
+            found = self._one_step(start, float(load[0]), change, self._starting_sides)
             if self._path.tension_stays or (
                 self._suffices(start, change, found) and self._agrees(start, load, change, found)
             ):
@@ -122,13 +122,13 @@ class _Contact(Legs):
 
     @property
     def _followed(self) -> bool:
-        """Whether the next leg is followed without a trial: slip that turned round a cycle before does so again."""
+        """Whether the next leg is followed without a trial: slip that reversed a cycle before does so again."""
         return len(self.legs) > self._cycle and self.legs[-self._cycle].leg is not None
 
     @property
-    def _known(self) -> Sides | None:
+    def _starting_sides(self) -> Sides | None:
         """Where the search for the sides after the next leg begins: at those of the previous cycle, or at those after
-        the leg before turned round."""
+        the leg before reversed."""
         if not self.legs:
             return self._near
         if len(self.legs) > self._cycle:

@@ -47,10 +47,12 @@ class SlidesError(InputError):
 
 @dataclass(frozen=True)
 class Growth:
-    """How the contact grows with the force that presses the bodies together: ``similar`` if these are half-planes with
-    Dundurs' beta, pressed under the even gap ``under``; ``stages`` gives the stages, by default from a flat punch on
-    the nodes. ``sized``: the same of like bodies of a size, nearly; ``nearly_similar``: of any bodies of a size, under
-    a parabola. ``near``: about the half-width."""
+    """Growth of the contact while coupled bodies are pressed together.
+
+    ``similar``: half-planes with Dundurs' beta under the even gap ``under``, self-similar growth; ``sized``: nearly so,
+    bodies of one material and size; ``nearly_similar``: any bodies of finite size under a parabola. ``stages`` gives
+    the stages of pressing (default: from a flat punch on the nodes); ``near`` is an estimate of the half-width.
+    """
 
     similar: bool = False
     sized: bool = False

@@ -85,7 +85,7 @@ class Legs:
         Normal forces on each way of the path.
     path : Path
     few : int
-        Nodes that may slip both ways where slip does not turn round.
+        Nodes that may slip both ways where slip does not reverse.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class Legs:
         pressed, bounds = self._pressed[way], self._bounds[way]
         self.legs.append(done := self._leg(self._here(before.x), load, change, pressed, bounds))
         found = done.found if len(self._on) == self._count else done.found.spread(self._on, self._count)
-        return found, self._spread(pressed.values[-1])
+        return found, self._at_all_nodes(pressed.values[-1])
 
     def _leg(self, start: Array, load: Array, change: Array, pressed: Bounds, bounds: Bounds) -> Done:
         """Go along one leg, event by event."""
@@ -134,7 +134,7 @@ class Legs:
         """``values`` at the nodes that are ever in contact. If all are, the same array: its product with C is known."""
         return values if len(self._on) == self._count else values[self._on]
 
-    def _spread(self, values: Array, outside: float = 0.0) -> Array:
+    def _at_all_nodes(self, values: Array, outside: float = 0.0) -> Array:
         """``values`` (..., k) at all nodes, (..., n)."""
         result = np.full((*values.shape[:-1], self._count), outside)
         result[..., self._on] = values
@@ -148,13 +148,15 @@ class Legs:
         second = last[path.ends[1]] if path.in_phase and last[path.ends[1]].leg else None
         return replace(
             history,
-            held=self._spread(np.logical_and.reduce([each.held for each in last])).astype(bool),
-            slipped=self._spread(np.sum([each.slipped for each in last], axis=0)),
+            held=self._at_all_nodes(np.logical_and.reduce([each.held for each in last])).astype(bool),
+            slipped=self._at_all_nodes(np.sum([each.slipped for each in last], axis=0)),
             dissipated=sum(each.leg.dissipated for each in last if each.leg),
-            around=Steps(ways, self._spread(np.concatenate(forces)), self._spread(pressures), self._f, joined(shifts)),
+            around=Steps(
+                ways, self._at_all_nodes(np.concatenate(forces)), self._at_all_nodes(pressures), self._f, joined(shifts)
+            ),
             turns=path.in_phase and any(each.turned > self._few for each in last),
-            changed=self._spread(second.changed, np.nan) if second else None,
-            stuck=self._spread(second.leg.stuck, np.nan) if second and second.leg else None,
+            changed=self._at_all_nodes(second.changed, np.nan) if second else None,
+            stuck=self._at_all_nodes(second.leg.stuck, np.nan) if second and second.leg else None,
             events=sum(each.leg.events for each in self.legs if each.leg),
         )
 

@@ -23,7 +23,7 @@ def march(tangential: Array, stretch: Array, f: Array, press: Presses, path: Pat
     tangential, stretch, f, press, path
         As for :func:`partialslip.friction.coulomb_varying_pressure.march`.
     few : int
-        Nodes that may slip both ways where slip does not turn round, as for
+        Nodes that may slip both ways where slip does not reverse, as for
         :func:`partialslip.friction.coulomb_constant_pressure.march`.
 
     Raises SlidesError if no node sticks.

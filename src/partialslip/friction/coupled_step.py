@@ -120,7 +120,8 @@ class LoadStep:
         return np.array([1.0, along, *([1.0] if self.pivot else [])])
 
     def _borne(self, found: Forces) -> Array:
-        """What of the totals the forces bear."""
+        """Resultants of the nodal forces to be compared with the prescribed totals: P; Q, or the displacement of the
+        actuator's end; and M about the pin if a body pivots."""
         p, q, (_, shift, *_) = found
         Q = float(q.sum())
         along = Q if self.actuator is None else self.actuator * Q + shift
@@ -166,7 +167,7 @@ class LoadStep:
         free = (self.kept - self.xy @ pressed.x)[on]
         if self.pivot:
             free = free + pressed.turn * self.pivot.height
-        sheared = self._held(submatrix(self.xx, on, on), free, bound, q.sides[on]).spread(on, n)
+        sheared = self._tangential_forces(submatrix(self.xx, on, on), free, bound, q.sides[on]).spread(on, n)
         moved = self.yx @ (sheared.x - q.x)  # opening due to the change of q, which p does not include yet
         left = np.abs(moved - moved[on].mean()) / np.diag(self.yy)
         if self.pivot:
@@ -174,7 +175,7 @@ class LoadStep:
             pressed = replace(pressed, imbalance=max(pressed.imbalance, off))
         return replace(pressed, residual=left), replace(sheared, turn=pressed.turn)
 
-    def _held(self, C: Array, free: Array, bound: Array, sides: Sides) -> Solution:
+    def _tangential_forces(self, C: Array, free: Array, bound: Array, sides: Sides) -> Solution:
         """Tangential forces of the nodes that touch, for given normal ones. The end of an actuator is one more node,
         which always sticks, and bears what the others do."""
         if self.actuator is None:
@@ -197,7 +198,7 @@ class LoadStep:
                 return None
             solver = solver or self._solver(touch, slip)
             found = self._linear_solve(solver, touch, slip, refined, found)
-            opening, rest = self._off(found, (0, 0) if refined else longest(touch & (slip == 0)))
+            opening, rest = self._gap_and_slip(found, (0, 0) if refined else longest(touch & (slip == 0)))
             scale, (p_new, q_new, _) = self._scale(found), found
             noise = _ROUNDING * scale
             pushed = p_new - opening / np.diag(self.yy)
@@ -238,7 +239,7 @@ class LoadStep:
         found = found or solve(self._load, totals)
         if not refined:
             return found
-        opening, rest = self._off(found)
+        opening, rest = self._gap_and_slip(found)
         sticks = touch & (slip == 0)
         left = -np.stack([np.where(touch, opening, 0.0), np.where(sticks, rest, 0.0)])
         change = solve(left, totals - self._borne(found))
@@ -255,9 +256,9 @@ class LoadStep:
             ]
         )
 
-    def _off(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
-        """Opening of the gap, and slip, under the forces, (2, n). Nodes from the first up to the second of ``but``,
-        which are known to touch and to stick, are left out."""
+    def _gap_and_slip(self, found: Forces, but: tuple[int, int] = (0, 0)) -> Array:
+        """Opening of the gap and slip increment under the forces, (2, n); zero, not calculated, at nodes from but[0] up
+        to but[1], which stick."""
         p, q, (approach, shift, *_) = found
         gap, kept = self._turned(found)
         result = np.zeros((2, len(p)))
@@ -274,7 +275,7 @@ class LoadStep:
         return self.gap - along_y, self.kept + along_x
 
     def _solver(self, touch: Mask, slip: Sides) -> _Solver:
-        """What solves the linear system of one partition."""
+        """Solver of the linear system of a partition: nodes that ``touch``, sides that ``slip``."""
         solve = self._solver_without_pivot(touch, slip)
         if not (pivot := self.pivot):
             return solve
@@ -291,7 +292,7 @@ class LoadStep:
         return turned
 
     def _solver_without_pivot(self, touch: Mask, slip: Sides) -> _Solver:
-        """The same of bodies that do not turn."""
+        """Solver as :meth:`_solver` for bodies that do not rotate."""
         if self.factors and (partition := self.factors.partition(touch, slip, self.f)):
             return partial(partition.solve, actuator=self.actuator)
         on, sticks = np.flatnonzero(touch), np.flatnonzero(touch & (slip == 0))

@@ -6,11 +6,11 @@ the force P'(s) ds = w s Psi(b/s) ds that closes the gap beyond b,
     int_b^x U(x/s) P'(s) ds = w (x - b)^2/2 for all x > b,
 
 if U(x/s) is what the force 1 on a flat punch of the half-width s opens at x. Without coupling U = arcosh(x/s) and Psi =
-arccos(b/s). In unlike half-planes with friction the shear that pressing locks in changes the pressure under a punch,
-and with it U: at the punch's ends, which slip, it has the power 1/2 + eps, and Psi the power 1/2 - eps, with tan(pi
-eps) = f beta (Spence 1975). Psi is arccos(b/s)^(1 - 2 eps) times a polynomial in b/s then, fitted to the gap. That is
-as good as the ends are wide that slip: it leaves 2e-4 of the gap where these are 0.01 of the contact, 2e-3 at 0.002,
-and up to 0.06 where hardly anything slips.
+arccos(b/s). In dissimilar half-planes with friction the shear that pressing locks in changes the pressure under a
+punch, and with it U: at the punch's ends, which slip, it has the power 1/2 + eps, and Psi the power 1/2 - eps, with
+tan(pi eps) = f beta (Spence 1975). Psi is arccos(b/s)^(1 - 2 eps) times a polynomial in b/s then, fitted to the gap.
+That is as good as the ends are wide that slip: it leaves 2e-4 of the gap where these are 0.01 of the contact, 2e-3 at
+0.002, and up to 0.06 where hardly anything slips.
 """
 
 from dataclasses import dataclass, replace

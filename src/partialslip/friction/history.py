@@ -63,12 +63,12 @@ class History:
     around : Steps
         The load steps of the last cycle.
     turns : bool
-        In phase: whether slip turns round on a leg of the last cycle.
+        In phase: whether slip reverses on a leg of the last cycle.
     changed : (n,) array or None
         In phase: share of the leg to load point 2 at which a node last began to slip or to stick; nan where it did
         neither. None if the leg was not followed.
     stuck : (n,) array or None
-        On the same leg: share at which a node last stuck again, whether or not it slipped once more; nan where it
+        On the same leg: share at which a node last re-stuck, whether or not it slipped once more; nan where it
         never did.
     events : int
         Number of instants at which rates change, on legs that are followed.
@@ -134,9 +134,9 @@ class History:
 
     @cached_property
     def room(self) -> Array | None:
-        """Where the pressure varies, out of phase: the least room of q up to f p in the last cycle, plus that down to
-        -f p, (n,); zero where a node slips both ways, or is open at times. None elsewhere: it is f (p_1 + p_2) less the
-        change of q without sign."""
+        r"""Room of q up to f p plus room down to -f p, the least of each in the last cycle, (n,), out of phase under
+        varying pressure; zero where a node slips both ways or opens. None elsewhere: there it is f (p_1 + p_2) - \|q_2
+        - q_1\|."""
         if self.path.in_phase or not self.path.presses_anew:
             return None
         forces, bounds = self.around.forces, self.around.bounds
@@ -175,27 +175,23 @@ class History:
     @property
     def repeats(self) -> bool:
         """Whether q changed over the last cycle by less than ``STEADY`` times the change over half a cycle."""
-        return bool(self._moved.max() <= STEADY * np.abs(self.change).max())
+        return bool(self._cycle_change.max() <= STEADY * np.abs(self.change).max())
 
     @property
-    def _moved(self) -> Array:
+    def _cycle_change(self) -> Array:
         """Change of the forces over the last cycle, (n,), without sign."""
         return np.abs(self.points[-1].x - self.points[-1 - len(self.path.cycle)].x)
 
     @property
     def unsteady(self) -> Array | None:
-        """Room 2 f p - \\|dq\\| that is gone in the steady state, (n,); None if no cycles were followed.
+        r"""Room 2 f p - \|dq\| that vanishes in the steady state, (n,); None if no cycles were followed.
 
-        Gone is room that has no limit but none (:func:`partialslip.friction.limit.lost`). Nodes that stick again after
-        they slipped come to the bound slowly: their changes in geometric progression add up to the last change times
-        r/(1 - r), with r the ratio of the last two changes; r is known within a factor of two of 1 - r, where cycles
-        end close to their limit. Room that falls with a power of the cycles lasts as many changes of the last cycle as
-        cycles went before: more is not counted. A single node may hardly move by chance, so that the one of its
-        neighbours that moves most tells.
-
-        At constant pressure half cycles of a steady state are mirror images of each other: nodes that slip as they come
-        to load point 2 slip as they come to load point 1, too. All of their room is gone, even if it does not fall
-        evenly.
+        Room with the limit zero vanishes (:func:`partialslip.friction.limit.lost`). At re-stuck nodes, changes d of q
+        per cycle in geometric progression add up to d r/(1 - r), with r the ratio of the last two, and 1 - r known
+        within a factor of two; changes that fall like a power of the cycles count as d times the number of cycles
+        taken. d is the largest of a node and its neighbours, as a single node may hardly move by chance. At constant
+        pressure half cycles of a steady state mirror each other: nodes that slip towards load point 2 slip towards load
+        point 1, too, and lose all of their room.
         """
         if self.rooms is None:
             return None
@@ -262,8 +258,8 @@ class History:
 
     @property
     def creeps(self) -> Mask | None:
-        """Nodes that slip farther one way than back in the last cycle, (n,): they come to their place under mean loads,
-        and do not slip in the steady state. None where this is not known."""
+        """Nodes (n,) with net slip over the last cycle: they creep to their place under mean loads and do not slip in
+        the steady state. None if not known."""
         if self.slipped is None:
             return None
         forth, back = self.slipped
@@ -277,7 +273,7 @@ class History:
         return None if never is None or creeps is None else never | creeps
 
     def turning(self, x: Array) -> list[float]:
-        """Points where an end of the stick zone turned round, between the nodes ``x`` (n,); none where this is not
+        """Points where an end of the stick zone reversed, between the nodes ``x`` (n,); none where this is not
         known."""
         still = self.still if self.turns else None
         return [] if still is None else turning_points(x, still, self.slips)

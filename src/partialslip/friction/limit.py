@@ -47,7 +47,7 @@ def cycles_settled(changes: Sequence[float]) -> bool:
 
 
 def ahead(states: Sequence[Array], bound: Array) -> float | None:
-    """How many times its last change the state at the end of a cycle is away from its limit.
+    """Distance of the state at the end of a cycle from its limit, over its last change.
 
     Parameters
     ----------
@@ -91,8 +91,11 @@ def room_of(visited: Sequence[tuple[Array, Array]], ends: tuple[int, int] | None
 
 
 def falls(rooms: Sequence[Array] | Array) -> Array:
-    """What the ``rooms`` (n,) of cycles in turn will still lose: of rooms in geometric progression all that follows, by
-    Aitken's method; nan where the last three tell no progression, or where there are fewer."""
+    """Decrease of room still to come, (n,), by Aitken's method.
+
+    From the last three of the ``rooms`` by cycle, with the decreases d1 and d2: d2^2/(d1 - d2), the rest of a geometric
+    progression; 0 if d2 <= 0, nan if d2 >= d1, or with fewer cycles.
+    """
     if len(rooms) < 3:
         return np.full(len(rooms[-1]), np.nan)
     fell, fall = -np.diff(rooms[-3:], axis=0)
@@ -101,13 +104,13 @@ def falls(rooms: Sequence[Array] | Array) -> Array:
 
 
 def lost(rooms: Sequence[Array] | Array) -> Mask:
-    """Nodes (n,) whose room has no limit but none: of room that falls in geometric progression nothing is left, of room
-    that falls with a power of the cycles a part."""
+    """Nodes (n,) whose room tends to zero: :func:`falls` takes at least ``_LOST`` of it. Of room that decreases like a
+    power of the number of cycles it takes less."""
     return falls(rooms) >= _LOST * rooms[-1]
 
 
 def undecided(rooms: Sequence[Array] | Array, bound: Array, moved: float, cycles: int) -> Mask:
-    """Nodes (n,) of which it is not known yet whether they slip in the steady state.
+    """Nodes (n,) of which the cycles so far do not show whether they slip in the steady state.
 
     Parameters
     ----------
@@ -150,8 +153,8 @@ class Cycles:
         self.changes, self.rooms = list[float](), list[Array]()
 
     def add(self, q: Array, before: Array, bound: Array, room: Array, largest: float, off: float) -> None:
-        """Add a cycle that changes the forces ``before`` it (n,) to ``q`` and leaves ``room`` (n,); ``largest`` and
-        ``off`` as for :func:`cycle_change`."""
+        """Add a cycle that changes the forces ``before`` (n,) to ``q`` and leaves the ``room`` (n,) to the bounds;
+        ``largest`` and ``off`` as for :func:`cycle_change`."""
         self._count += 1
         self.changes.append(cycle_change(q, before, self._settled * bound, largest, off))
         self.rooms.append(room)

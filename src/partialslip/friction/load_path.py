@@ -35,26 +35,45 @@ class Missed(NamedTuple):
 
 @dataclass(frozen=True)
 class Path:
-    """Loads at the points of a ``cycle``, scaled: Q, the relative strain of the surfaces due to bulk tension at the
-    scene's x = 0, and its slope along x; where the pressure varies, then P and M, too: M about the pin if a body is on
-    one. Where an ``actuator`` of this compliance drives the bodies (0: a rigid one; None: none does), its displacement
-    stands in place of Q.
+    """Load path: from ``begin`` to the last load point, then ``cycles`` times through all load points; scaled.
 
-    ``ends`` are the indices of load points 1 and 2, the extremes of the cycle; ``in_phase`` says whether the points lie
-    on one line. The path begins at ``begin`` with the tangential forces ``before`` (n,) (None: zero), goes to the last
-    point and then ``cycles`` times through all points. ``half``: whether the first loading determines the cycle (fully
-    reversed loads, no shear at the beginning, no reversal of slip). ``one_way``: whether the pressure is always even,
-    and |dQ| >= f |dP| from each load point to the next, so that Q drives all slip one way.
+    Cycles end earlier when one changes the tangential force by less than ``settled`` f p at all nodes, and rounding:
+    the steady state, where the scene prescribes no number of cycles.
 
-    Cycles end where one changes the tangential force at no node by more than ``settled`` of its bound, and rounding:
-    where the scene does not tell how many there are, they lead to the steady state. ``steady`` is the change that
-    counts as none in a steady state, whoever tells how many cycles there are.
-
-    ``substeps`` is the smallest number of steps between points. ``ways`` are the steps as ascending fractions up to 1:
-    to the last point first, then to each point of the cycle; default: ``substeps`` equal steps. A path that is
-    ``followed`` has no steps: where the pressure varies, each leg is followed event by event. ``turns`` tells whether
-    slip is known to turn round on the way. ``missed`` is the work of friction that the steps miss: nothing on a path
-    that is followed, and None where it is not known.
+    Parameters
+    ----------
+    cycle : tuple of tuples
+        Loads at the load points: Q, relative strain of the surfaces due to bulk tension at x = 0, and its slope along
+        x; under varying pressure also P and M (about the pin if a body pivots).
+    ends : (int, int)
+        Indices of load points 1 and 2, the extremes of the cycle.
+    in_phase : bool
+        Whether all load points lie on one line.
+    cycles : int
+    substeps : int
+        Least number of load steps from load point to load point.
+    begin : tuple of float
+        Loads before the first step.
+    before : (n,) array, optional
+        Tangential forces before the first step; default zero.
+    half : bool
+        Whether the first loading determines the cycle: fully reversed loads, no initial shear, no slip reversal.
+    one_way : bool
+        Whether the pressure is always even and |dQ| >= f |dP| on each load segment, so that Q drives all slip one way.
+    ways : tuple of tuples
+        Ends of the load steps as ascending fractions up to 1 of each load segment: first to the last load point, then
+        to each point of the cycle. Default: ``substeps`` equal steps.
+    settled, steady : float
+        Change of the tangential force over a cycle, over its bound, that ends the cycles, and that counts as zero in a
+        steady state however many cycles are prescribed.
+    followed : bool
+        Whether, under varying pressure, each load segment is followed event by event, without load steps.
+    turns : bool
+        Whether slip is known to reverse on a load segment.
+    actuator : float, optional
+        Compliance of the actuator (0: rigid) whose displacement stands in place of Q; None without one.
+    missed : Missed, optional
+        Work of friction that the load steps miss: zero if ``followed``, None if not known.
     """
 
     cycle: tuple[tuple[float, ...], ...]

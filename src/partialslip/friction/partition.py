@@ -88,11 +88,11 @@ class Nested:
         self._loaded: tuple[Array, Array] = np.empty((2, 0)), np.empty(0)
 
     def core(self, sticks: Mask) -> int:
-        """Number of the first nodes that all stick, of those that do, (n,)."""
+        """Number of leading nodes of the elimination order that all stick; ``sticks`` (n,)."""
         return _leading(sticks[self.order])
 
     def reach(self, touch: Mask) -> bool:
-        """Include all nodes that ``touch`` (n,); whether this took a new factor."""
+        """Extend the factor to all nodes that ``touch`` (n,); True if it was extended."""
         count = int(np.flatnonzero(touch[self.order])[-1]) + 1
         if 2 * count <= len(self.L):
             return False

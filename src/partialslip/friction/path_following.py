@@ -1,7 +1,7 @@
 """Coulomb friction along a straight leg of the load path, exactly in time, event by event.
 
 The rates of all nodes are constant between two events. At an event a node reaches its bound and begins to slip; held
-nodes whose slip would turn round stick again; where the pressure varies, nodes touch and open. Each change of a node is
+nodes whose slip would reverse re-stick; where the pressure varies, nodes touch and open. Each change of a node is
 a principal pivot (:class:`partialslip.friction.tableau.Tableau`). There are no load steps, and no errors of load
 steps. This is parametric quadratic programming; the rates after an event are found by principal pivoting (Keller,
 1973).
@@ -51,7 +51,7 @@ class Bounds(NamedTuple):
 
     @property
     def reversed(self) -> "Bounds":
-        """The same on the way back."""
+        """Bounds along the reversed load segment."""
         return Bounds(1.0 - self.at[::-1], self.values[::-1])
 
     def of(self, nodes: Indices) -> "Bounds":
@@ -85,7 +85,7 @@ class Leg:
     lowest, highest : (n,) arrays
         Smallest and largest forces along the leg, its ends included.
     began, stuck : (n,) arrays
-        lambda at which a node last began to slip, and at which it last began to stick again; nan: never.
+        lambda at which a node last began to slip, and at which it last began to re-stick; nan: never.
     slips : (n,) bool array
         Nodes that slip at the end.
     dissipated : float
@@ -146,7 +146,7 @@ class Leg:
 
 
 def joined(shifts: Sequence[Array]) -> Array:
-    """Rigid shifts since the beginning of legs that follow each other, from those since each leg began."""
+    """Rigid shifts since the beginning of consecutive legs, from the shifts since each leg began."""
     begins = np.cumsum([0.0, *(leg[-1] for leg in shifts)])
     return np.concatenate([begin + leg for begin, leg in zip(begins.tolist(), shifts, strict=False)])
 
@@ -235,7 +235,7 @@ class _Leg:
             while True:
                 self._settle()
                 if self._tableau.pivots - self._checked >= _CHECKED:
-                    self._check()
+                    self._refresh_tableau()
                 node, way, step = self._next(end)
                 rate = self._rate()
                 while wanted and wanted[0] <= self._at + step:
@@ -271,7 +271,7 @@ class _Leg:
             if self._sides[node] == 0:
                 self._change(node)
         self._along = self._sides * self._slope
-        self._solve()
+        self._set_rates()
 
     def _beside(self, node: int, was: Mask) -> int:
         """Bound on which nodes slip beside the ``node`` that touches; 0 if they stick. Open nodes ``was`` (n,)."""
@@ -285,7 +285,7 @@ class _Leg:
 
     def _result(self, states: Sequence[tuple[Array, float]], events: int) -> Leg:
         self._refine()
-        off = np.abs(self._off()) / self._diagonal
+        off = np.abs(self._displacement_errors()) / self._diagonal
         change = self._forces - self._start
         return Leg(
             forces=self._forces,
@@ -311,7 +311,7 @@ class _Leg:
         """Correct the rounding errors that the events have added up, by a product with C, if they are ``least`` of the
         bounds or more; errors that are more than rounding are left to be seen. Nodes that stick at their bounds, and
         would get beyond them, slip a little instead: a force that is cut off at its bound is an error at all others."""
-        tableau, sticks, off = self._tableau, self._tableau.sticks, self._off()
+        tableau, sticks, off = self._tableau, self._tableau.sticks, self._displacement_errors()
         whole = float(self._bound.sum())
         if not least * whole <= float((np.abs(off) / self._diagonal).max()) <= _SEEN * whole:
             return
@@ -337,8 +337,8 @@ class _Leg:
         self._path = np.maximum(self._path, np.abs(self._slip))
         self._shift += float(p[-1])
 
-    def _off(self) -> Array:
-        """Errors of the displacements (n,): the way from the beginning, by a product with C, less what is added up."""
+    def _displacement_errors(self) -> Array:
+        """Errors of the displacements summed up along the leg, (n,): C (F - F_start) less that sum."""
         return self._C @ (self._forces - self._start) - self._at * self._g - self._shift - self._rest
 
     def _begin(self) -> None:
@@ -348,15 +348,15 @@ class _Leg:
         if slipping.any():
             if not (free[slipping].all() and slipping[self._open].all()):
                 tableau.restart(np.flatnonzero(self._open | (slipping & free)))
-            self._solve()
+            self._set_rates()
             wrong = np.count_nonzero(self._room() < -self._tolerance())
             if 2 * wrong <= np.count_nonzero(~(tableau.sticks | self._open)):
                 return
         if slipping.any() or self._open.any():
             tableau.restart(np.flatnonzero(self._open))
-        self._solve()
+        self._set_rates()
 
-    def _solve(self) -> None:
+    def _set_rates(self) -> None:
         self._p = self._tableau.solve(self._g, self._Q, self._along)
         self._noise = noise(self._rate(), self._g, float(self._p[-1]), self._diagonal)
 
@@ -371,13 +371,13 @@ class _Leg:
         return np.where(self._tableau.sticks, -self._p[:-1], 0.0) + self._along
 
     def _room(self) -> Array:
-        """What must not be negative (n,): T' away from the moving bound at nodes on it that stick, the rate of slip
-        along T at nodes that slip; 0 at the other nodes."""
+        """Rates that must be >= 0, (n,): of T away from the moving bound at nodes on it that stick, of slip along T at
+        nodes that slip; 0 at all other nodes."""
         return np.where(self._tableau.sticks, self._sides, -self._sides) * self._p[:-1]
 
     def _tolerance(self) -> Array:
-        """What of :meth:`_room` cannot be told from zero: rates that change forces by less than ``_AT`` of the bound
-        over the leg, or rounding errors."""
+        """Rates of :meth:`_room` that count as zero, (n,): rounding errors, or changes below ``_AT`` of the bound over
+        the leg."""
         return np.maximum(self._noise, self._least) * np.where(self._tableau.sticks, 1.0, self._diagonal)
 
     def _settle(self) -> None:
@@ -435,15 +435,15 @@ class _Leg:
                 "without an end; the compliance is ill-conditioned"
             )
 
-    def _check(self) -> None:
-        """Set the tableau up anew if a product with C shows errors of its rates, and correct what the events have added
-        up before it is too much to be rounding: the smaller the elements, the more it is."""
+    def _refresh_tableau(self) -> None:
+        """Factor the tableau again if its rates do not solve C F' = g + shift' + slip' within rounding, and correct the
+        displacements that the events have summed up: their rounding errors grow as elements shrink."""
         rate, tableau = self._rate(), self._tableau
         rest = np.where(tableau.sticks, 0.0, self._p[:-1])
         off = np.abs(self._C @ rate - self._g - self._p[-1] - rest) / self._diagonal
         if (off > np.maximum(_DRIFT * float(np.abs(rate).sum()), self._noise)).any():
             tableau.restart(np.flatnonzero(~tableau.sticks))
-            self._solve()
+            self._set_rates()
             self._settle()
         self._refine(_ADDED)
         self._checked = tableau.pivots

@@ -21,7 +21,7 @@ and only the force P(s) of the half-width s differs:
     q(x) = int_x^a q_flat(x/s) P'(s) ds / s,    of like bodies of a size q_flat(x/s) P'(s) ds / a,
 
 where a step w of the gap's curvature at |x| = b adds w s arccos(b/s) to P'(s), as on half-planes of like materials; of
-unlike ones see :mod:`partialslip.friction.even_gap`.
+dissimilar ones see :mod:`partialslip.friction.even_gap`.
 
 In other bodies of a size the stages are nearly similar: what a punch
 does at x/s depends on (s/W)^2, W being the size. What counts of an earlier stage are the displacements at which points
@@ -75,7 +75,7 @@ class Pressed:
     corners: tuple[float, float] | None = None
 
     def on(self, nodes: Indices) -> "Pressed":
-        """The same with the growth at some ``nodes`` only (indices)."""
+        """Pressed bodies with the growth at the ``nodes`` (indices) only."""
         return replace(self, growth=(self.growth[0][nodes], self.growth[1][nodes]), f=self.f[nodes])
 
     def slipped(self) -> bool:
@@ -84,8 +84,8 @@ class Pressed:
         return bool((np.abs(q)[p > 0] >= (1 - _STICKS) * self.f[p > 0] * p[p > 0]).any())
 
     def scaled(self, stick: StickInterval, left: float, right: float) -> StickInterval:
-        """Stick zone of the contact from ``left`` to ``right``, from that of the ``growth``: it is the same part of the
-        contact as of the punch, which ends where nodes let it."""
+        """Stick zone of the contact from ``left`` to ``right``, from the ``stick`` zone under the flat punch of the
+        ``growth``: the same fraction of the contact as of the punch width between its corner nodes."""
         if not self.corners:
             return stick
         first, last = self.corners
@@ -230,10 +230,12 @@ class FlatPunch:
 
 
 def disproportion(x: Array, punch: tuple[Array, Array], other: tuple[Array, Array]) -> float:
-    """Relative error of the assumption that q under the force 1 grows like the half-width, from forces along y and x
-    under two flat punches, (n,) each, at ``x`` (n,) from their middle: those along x on either side are in proportion
-    to the spread of those along y, which tells the half-width better than corners do, beside which elements may be
-    large."""
+    """Relative error of q under the force 1 if it is assumed to grow like the half-width.
+
+    From the forces along y and x under two flat punches, (n,) each, at ``x`` (n,) from their middle: forces along x on
+    either side are in proportion to the spread of those along y, a better measure of the half-width than corners,
+    beside which elements may be large.
+    """
     sides = np.array([x < 0, x > 0])
     own, its = ((sides * q).sum(axis=1) / np.sqrt(p @ x**2) for p, q in (punch, other))
     scale = float(np.abs(own).max())

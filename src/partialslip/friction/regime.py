@@ -88,7 +88,8 @@ def steady_state(
 
 
 def _unsure(history: History, regime: Regime) -> dict[str, str]:
-    """What the cycles of a ``history`` do not tell, as :attr:`Result.undetermined`."""
+    """Quantities that the cycles of a ``history`` leave undetermined, with the reasons, as
+    :attr:`Result.undetermined`."""
     unsure = {}
     if regime != "ratchets" and STEADY < history.ratchets <= _RATCHETS:
         unsure["regime"] = (
@@ -124,7 +125,7 @@ def _end_slips(x: Array, history: History, stick: StickInterval) -> tuple[EndSli
 
 
 def permanent_zone(x: Array, history: History, stick: StickInterval) -> tuple[float, float] | None:
-    """Left and right end of the zone that never slips in a steady cycle in which slip turns round: the widest group of
+    """Left and right end of the zone that never slips in a steady cycle in which slip reverses: the widest group of
     nodes ``x`` (n,), ascending, in the ``stick`` zone that are still in the ``history``. An end is half way between
     nodes, or that of the stick zone where no node slips beside it. (nan, nan) if all nodes slip, None if the slip on
     the way is not known."""

@@ -24,7 +24,7 @@ from partialslip.tools.bars import BARS, LEAST_SHEAR
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-# limit: relative L2 difference of pressures of two contacts; shear of unlike bodies changes p by a tenth
+# limit: relative L2 difference of pressures of two contacts; shear of dissimilar bodies changes p by a tenth
 _ANOTHER = 0.25
 _UNKNOWN = "the error of the state at the beginning is not known: the estimates leave it out"
 
@@ -52,7 +52,7 @@ def begun(
     """
     if not (start and history):
         return {}, ()
-    here, pressed = history.end[1], _pressed(history, weights)
+    here, pressed = history.end[1], _mean_pressure_norm(history, weights)
     notes: tuple[str, ...] = ()
     if (other := _norm(forces(start) - here, weights) / _norm(here, weights)) > _ANOTHER:
         notes = (f"p of the state at the beginning is off by {other:.0%}: it seems to be the state of another contact",)
@@ -77,14 +77,14 @@ def end_state(
     Its error of q is that of all ``errors`` of q1 and q2; None if these are not known. The other arguments are as for
     :func:`begun`.
     """
-    pressed = _pressed(history, weights)
+    pressed = _mean_pressure_norm(history, weights)
     norms = _norms(history, weights)
     error = max((errors[key] * norms[key] / pressed for key in ("q1", "q2") if key in errors), default=None)
     Q, sigma, slope = scene.load.along[-1]
     return State(scene.pressing[-1].P, scene.material.A, Q, sigma, p, q, slope, error)
 
 
-def _pressed(history: History, weights: Array) -> float:
+def _mean_pressure_norm(history: History, weights: Array) -> float:
     """L2 norm of the mean of p at load points 1 and 2."""
     first, second = history.pressures
     return _norm((first + second) / 2, weights)

@@ -31,24 +31,25 @@ def steps_matter(errors: Mapping[str, float], accuracy: float) -> bool:
 def of_steps(
     line: ContactLine, history: History, gradual: History, half_width: float, common: Ends | None = None
 ) -> Errors:
-    """Errors of m and n (in contact half-widths), q, q1 and q2 (relative L2) of a history in steps.
+    """Errors of m and n (in contact half-widths), q, q1 and q2 (relative L2) due to the load steps of ``history``: its
+    differences from ``gradual``.
 
     Parameters
     ----------
     line : ContactLine
-        With the nodes of both histories.
+        Its nodes are those of both histories.
     history, gradual : History
-        With the steps taken, and without any.
+        The history in load steps, and the more gradual one that it is compared with.
     half_width : float
         Half-width of the contact.
     common : (float, float), optional
-        Ends of what is in contact at both load points; by default as the forces tell.
+        Ends of the part of the line in contact at both load points; default: from the nodal forces.
     """
     held, (zone, other) = np.sqrt(line.weights), (line.stick_zone(each, common) for each in (history, gradual))
     found = {"m": abs(zone.left - other.left) / half_width, "n": abs(zone.right - other.right) / half_width}
     for key in _SHEARS:
         forces = getattr(history, key)
-        size = max(float(np.linalg.norm(forces / held)), _least(history, held) * (2 if key == "change" else 1))
+        size = max(float(np.linalg.norm(forces / held)), _smallest_norm(history, held) * (2 if key == "change" else 1))
         if size > 0:
             off = float(np.linalg.norm((getattr(gradual, key) - forces) / held))
             found["q" if key == "change" else key] = off / size
@@ -77,15 +78,18 @@ def of_plates(history: History, finer: History) -> Array:
 
 
 def other_steps(path: Path) -> Path:
-    """The ``path`` in half as large steps, and others that end at odd fractions of each way: where a stick zone moves
-    past both ends of a step, halves alone may see nothing of it."""
+    """``path`` with halved load steps and with ends of steps at odd fractions of each load segment: halved steps alone
+    can miss a stick zone that moves past both ends of a step."""
     return path.halved.with_steps(max(2 * path.substeps + 1, _PROBED))
 
 
 def more_steps(path: Path, errors: Mapping[str, float], others: Mapping[str, float], accuracy: float) -> Path | None:
-    """The ``path`` of coupled bodies in as many steps as make their ``errors``, of first order in the steps, no more
-    than half of what the ``accuracy`` (of a) allows, or than the ``others``; a power of 2 times as many, as far as
-    the limits let them. None if there are enough, or would be too many."""
+    """``path`` of coupled bodies with 2^k times as many load steps; None if the present steps suffice, or the limits
+    allow no more.
+
+    The ``errors`` e are of first order in the steps. The smallest k within the limits with e/2^k <= max(BARS
+    accuracy/2, ``others``) is taken: ``others`` are errors that finer steps do not change.
+    """
     allowed = {key: max(BARS[key] * accuracy / 2, others.get(key, 0.0)) for key in errors}
     most = _MOST_STEPS // path.substeps
     excess = max((errors[key] / each for key, each in allowed.items()), default=0.0)
@@ -97,23 +101,28 @@ def more_steps(path: Path, errors: Mapping[str, float], others: Mapping[str, flo
 
 
 def summed(*errors: Mapping[str, float]) -> Errors:
-    """Sums of ``errors`` by key."""
+    """Sums of ``errors`` by key; a missing key counts as 0."""
     return {key: sum(each.get(key, 0.0) for each in errors) for key in dict.fromkeys(itertools.chain(*errors))}
 
 
 def pressed_together(history: History, pressed: Pressed, weights: Array, nodes: Indices) -> Errors:
-    """Errors of a, left, right, m and n (in half-widths), q1 and q2 (relative L2) of coupled bodies ``pressed``
-    together in steps: an error of q at the end of pressing may persist. The stick zone ends where friction lets it,
-    and so as badly known as the contact (measured: m moves twice as far as a). ``weights`` turn tractions at all nodes
-    of the contact line into forces; ``nodes`` are the indices of the nodes of ``history``."""
+    """Errors due to the steps in which coupled bodies are ``pressed`` together: a, left, right, m and n in half-widths,
+    q1 and q2 in relative L2.
+
+    The error of the shear locked in by pressing may persist: e_q is the L2 norm of this error over that of q1 or q2.
+    The error of a after pressing also enters those of m and n (measured: m moves twice as far as a). ``weights`` turn
+    tractions at all nodes of the contact line into forces; ``nodes`` are the indices of the nodes of ``history``.
+    """
     off = pressed.errors["q"] * np.linalg.norm(pressed.tangential.x / np.sqrt(weights))
     held = np.sqrt(weights[nodes])
-    least = _least(history, held)
+    least = _smallest_norm(history, held)
     norms = {key: max(float(np.linalg.norm(getattr(history, key) / held)), least) for key in ("q1", "q2")}
     return dict.fromkeys(("a", "left", "right", "m", "n"), pressed.errors.get("a", 0.0)) | {
         key: float(off / norm) for key, norm in norms.items() if norm > 0
     }
 
 
-def _least(history: History, held: Array) -> float:
+def _smallest_norm(history: History, held: Array) -> float:
+    """Smallest L2 norm of shear that relative errors refer to: ``LEAST_SHEAR`` times the norm of f p; ``held`` (n,) are
+    the square roots of the nodal weights."""
     return LEAST_SHEAR * float(np.linalg.norm(history.bound / held))

@@ -25,7 +25,7 @@ def follow_or_step(
     ----------
     along : callable
         ``along(path)``: the history along a path, in its steps or event by event (:attr:`Path.followed`). The path
-        of the returned history tells whether slip turns round on it.
+        of the returned history tells whether slip reverses on it.
     path : Path
     accuracy : float
         Accuracy of ends, as a fraction of a.
@@ -36,7 +36,7 @@ def follow_or_step(
     The errors are empty if one step is known to suffice, and on a path that is followed: there are no steps then. Where
     this is decided, the path of the returned history tells the work that steps miss.
 
-    Gradual loads decide, and not finer steps: where a stick zone moves while the loads change, or slip turns round, few
+    Gradual loads decide, and not finer steps: where a stick zone moves while the loads change, or slip reverses, few
     and many steps may all end with the same wrong tractions. The first cycles decide.
     """
     history = along(path)
@@ -58,6 +58,5 @@ def follow_or_step(
 
 
 def one_step_suffices(path: Path) -> bool:
-    """Whether the bulk tension is constant, so that Q drives all slip one way, which is known from the loads
-    (:attr:`Path.one_way`)."""
+    """Whether one load step is exact: constant bulk tension, and Q drives all slip one way (:attr:`Path.one_way`)."""
     return path.one_way and path.tension_stays

@@ -8,13 +8,13 @@ in the last elements.
 The fit needs a smooth function. Cells grow away from the end, so its vertices may reach as far as a kink of the
 profile, or as far as the gap departs from a parabola. A second fit, to fewer vertices, tells by how much that matters.
 
-Where the stick zone moves over nodes that have slipped, they stick again, and 2 f p - |dq| falls towards the end like
-distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth. The loads at which these nodes stuck
-again tell the end, too: it is read from them where many stuck at once.
+Where the stick zone moves over nodes that have slipped, they re-stick, and 2 f p - |dq| falls towards the end like
+distance^(3/2): the force varies like distance^(5/2), and force^(2/5) is smooth. The loads at which these nodes re-stuck
+tell the end, too: it is read from them where many stuck at once.
 
 An end that came back into a strip of such nodes is fitted to this strip alone: at its other side q has a kink. Where
 the strip is narrow, the end lies between the last node that sticks and the first one that slips. The strip may be
-narrower than the distance of two nodes: then no node lies in it, but the first one beyond had stuck again before it
+narrower than the distance of two nodes: then no node lies in it, but the first one beyond had re-stuck before it
 slips, if it slips at all.
 """
 
@@ -46,14 +46,15 @@ ROUNDED, CORNER = 3 / 2, 1 / 2
 
 @dataclass(frozen=True)
 class StickInterval:
-    """Interval [``left``, ``right``] in which dq is less than the bounds allow, the ``signs`` of dq on its left and
-    right, and which ends have ``moved`` outwards last, over points that slipped before. ``caught`` are ends that moved,
-    as the loads tell at which the nodes beside them stuck again; nan where no nodes did. ``strips`` are lengths
-    beside the ends over which so few nodes slipped before that the end is read as if none had, or over which there is
-    hardly any room up to the bound; where more nodes slipped, but too few for a fit, or where none did although the end
-    had turned round, the distance of the nodes between which the end lies; where the room beside an end that moved does
-    not tell it, the distance of both readings. ``fits`` are the distances between the ends that many and few vertices
-    of the mesh tell: errors of the fit."""
+    r"""Stick zone [``left``, ``right``], where \|dq\| is below the sum of the bounds, with what its ends are read from;
+    pairs: left, right.
+
+    ``signs``: of dq beside the ends. ``moved``: whether the end last moved outwards, over points that had slipped.
+    ``caught``: such ends from the loads at which the nodes beside them re-stuck; nan without such nodes. ``strips``:
+    lengths within which an end is uncertain: few nodes slipped there, or room is hardly any, or too few nodes for a fit
+    slipped, or, beside an end that moved, the two readings differ. ``fits``: differences between fits to many and to
+    few vertices, the errors of the fit.
+    """
 
     left: float
     right: float
@@ -89,10 +90,10 @@ def read_stick_zone(
     unsteady : (n,) array, optional
         Room that counts as none.
     stuck : (n,) array, optional
-        When nodes last stuck again, be it that they slipped once more; nan where they never did.
+        When nodes last re-stuck, be it that they slipped once more; nan where they never did.
     """
     room = np.divide(2 * bound - np.abs(change), bound, out=np.zeros_like(bound), where=bound > 0)
-    still = room > _STICKS  # nodes whose room is unsteady stick again, too
+    still = room > _STICKS  # nodes whose room is unsteady re-stick, too
     if unsteady is not None:
         room = np.where(room * bound <= unsteady, 0.0, room)
         change = np.where(room > 0, change, np.sign(change) * 2 * bound)
@@ -115,7 +116,7 @@ def read_stick_zone(
         for end_of, room, nodes, power in zip((left_end, right_end), rooms, fitted, powers, strict=True)
     )
     fits = abs(left - near_left), abs(right - near_right)
-    if changed is not None:  # beside a point where an end turned round, few vertices are left to the fit
+    if changed is not None:  # beside a point where an end reversed, few vertices are left to the fit
         left = float(np.clip(left, *x[np.clip([first - 2, first + 1], 0, len(x) - 1)]))
         right = float(np.clip(right, *x[np.clip([last - 2, last + 1], 0, len(x) - 1)]))
     moved = powers[0] != _ROOT, powers[1] != _ROOT
@@ -128,7 +129,9 @@ def read_stick_zone(
         if not 0 <= beyond < len(x):
             continue
         if moved[side]:
-            ends[side], unsure = _moved(x, changed, inside, ends[side], caught[side], fits[side], bool(still[beyond]))
+            ends[side], unsure = _outward_end(
+                x, changed, inside, ends[side], caught[side], fits[side], bool(still[beyond])
+            )
             strips[side] = max(strips[side], unsure)
             continue
         count = _slipped(changed, inside)
@@ -143,12 +146,16 @@ def read_stick_zone(
     return StickInterval(left, max(right, left), signs, moved, caught, (strips[0], strips[1]), fits)
 
 
-def _moved(
+def _outward_end(
     x: Array, changed: Array, inside: Indices, read: float, caught: float, fit: float, hidden: bool
 ) -> tuple[float, float]:
-    """An end of the stick zone that has moved outwards, and what is not known of it: the end that the room tells,
-    ``read`` by a ``fit`` of this error, or the one that was ``caught``, which tells it where many nodes ``inside``
-    stuck again at once. ``hidden``: room that counts as none hides the end."""
+    r"""An end of the stick zone that has moved outwards, and its error.
+
+    Two readings: ``read``, from the room 2 f p - \|dq\|, with the error ``fit`` of its fit; ``caught``, from the loads
+    at which the nodes ``inside`` re-stuck, which replaces ``read`` where ``_RUN`` nodes or more re-stuck in one event
+    and both agree. The error is their difference, at most the length of these nodes. ``hidden``: the room there is
+    within rounding.
+    """
     apart = abs(caught - read)
     if not math.isfinite(apart):
         return read, 0.0
@@ -177,9 +184,9 @@ def _vertices(between: Array, vertices: Array) -> int:
 
 
 def _flat(x: Array, room: Array, inside: Indices) -> float:
-    """Length beside an end of the stick zone over which nodes ``inside`` it, from the end on, have hardly any ``room``,
-    in the bound, and all the same: they have all but stopped to slip, and whether they stick nothing tells. 0 where
-    room grows with the distance from the end, as it does beside every other end."""
+    """Length beside an end of the stick zone over which the ``room`` of the nodes ``inside``, over the bound, is small
+    and uniform, so that the end is uncertain by this length; 0 where room grows with the distance from the end, as
+    usual."""
     found = room[inside]
     flat = (found <= _LEAVES) & (found <= _SAME * found[0])
     count = len(flat) if flat.all() else int(np.argmin(flat))
@@ -188,7 +195,7 @@ def _flat(x: Array, room: Array, inside: Indices) -> float:
 
 def _caught_up(x: Array, changed: Array, inside: Indices) -> float:
     """Where an end of the stick zone is at the end of a leg on which it moved outwards, from the shares of the leg at
-    which the nodes ``inside`` the zone, from the end on, stuck again: its speed is finite there; nan if they
+    which the nodes ``inside`` the zone, from the end on, re-stuck: its speed is finite there; nan if they
     stuck at fewer than ``_RUN`` instants."""
     since = 1 - changed[inside[:_CAUGHT]]
     still = np.flatnonzero(~np.isfinite(since))
@@ -291,7 +298,7 @@ def kinks(x: Array, bound: Array, q: Array, vertices: Array, cell_forces: Callab
 
 
 def turning_points(x: Array, still: Mask, slips: Mask) -> list[float]:
-    """Points where an end of the stick zone turned round, which leaves a kink in q: between the nodes ``x`` (n,),
+    """Points where an end of the stick zone reversed, which leaves a kink in q: between the nodes ``x`` (n,),
     ascending, that are ``still`` (n,) in a steady cycle and those that slip, but for the ends of the stick zone, beside
     which a node ``slips`` (n,) from load point 1 to 2."""
     starts = np.concatenate([[0], np.flatnonzero(np.diff(still)) + 1, [len(x)]])
@@ -367,8 +374,8 @@ def contact_ends(
 ) -> tuple[float, float]:
     """Left and right end of the contact.
 
-    Where unlike bodies slip under q = r p, p varies near the right end like distance^(1/2 + atan(beta r)/pi), and near
-    the left end like distance^(1/2 - atan(beta r)/pi) (Comninou 1976).
+    Where dissimilar bodies slip under q = r p, p varies near the right end like distance^(1/2 + atan(beta r)/pi), and
+    near the left end like distance^(1/2 - atan(beta r)/pi) (Comninou 1976).
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ class ExactTractions:
 
 
 class Answer(NamedTuple):
-    """What is known of a steady state.
+    """Steady state found by the exact method.
 
     Parameters
     ----------
@@ -92,7 +92,8 @@ def without_cycle(scene: Scene, first: Contact, second: Contact, ways: Ways | No
 
 
 def result_of(scene: Scene, found: Answer, inside: bool, clock: Clock) -> Result:
-    """The result; ``inside``: whether stresses are asked for."""
+    """Result of the exact method for the steady state ``found``; ``inside``: with stresses below the surface, or the
+    reason why they are missing."""
     first, second, state, levels, stress, *_ = found
     anew, regime, turns = scene.presses_anew, state.regime, found.turns
     tractions = ExactTractions(second, first if anew else None, found.dq, None if isinstance(levels, str) else levels)

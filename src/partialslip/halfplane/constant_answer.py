@@ -33,7 +33,7 @@ def under_constant_pressure(scene: Scene, pressed: Contact, change: Change, star
         partial(change.within, pressed, pressed.f),
         pressed.places(change.breaks).tolist(),
         not change.holds,
-        _slip(scene, pressed, change) if steady else None,
+        _slip_of_change(scene, pressed, change) if steady else None,
         change.certificate if slips else {},
     )
 
@@ -71,7 +71,7 @@ def _levels(scene: Scene, pressed: Contact, regime: Regime, change: Change, star
     return levels(pressed, pressed.f, scene.load, change)
 
 
-def _slip(scene: Scene, pressed: Contact, change: Change) -> Slip:
+def _slip_of_change(scene: Scene, pressed: Contact, change: Change) -> Slip:
     worn, stress = change.worn, pressed.f * pressed.p0
     unit = scene.material.A * stress * pressed.a
     energy = unit * stress * pressed.a

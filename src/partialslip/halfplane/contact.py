@@ -96,7 +96,7 @@ def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
         If the materials differ, the contact extends beyond the table of the profile, or P is too small for the contact
         to extend beyond the flat.
     """
-    return rubbing(_pressed(scene, pressing), scene)
+    return rubbing(_normal_contact(scene, pressing), scene)
 
 
 def rubbing(pressed: Contact, scene: Scene) -> Contact:
@@ -110,7 +110,7 @@ def rubbing(pressed: Contact, scene: Scene) -> Contact:
     return replace(pressed, f=bound.scale, bound=bound)
 
 
-def _pressed(scene: Scene, pressing: Pressing | None) -> Contact:
+def _normal_contact(scene: Scene, pressing: Pressing | None) -> Contact:
     if not scene.material.alike:
         raise InputError(
             "material.upper, material.lower: the bodies differ; must be of one material for exact, use march or fem"
@@ -164,7 +164,7 @@ def tilted_contact(scene: Scene, P: float, tilt: float) -> Contact:
     if tilt == 0:
         return contact(scene, Pressing(P, None))
     if isinstance(profile, Hertz):
-        turned = replace(_pressed(scene, Pressing(P, None)), centre=tilt * profile.R)
+        turned = replace(_normal_contact(scene, Pressing(P, None)), centre=tilt * profile.R)
     else:
         turned = _uneven(scene, profile.curvature.tilted(tilt), Pressing(P, None))
     return rubbing(replace(turned, tilt=tilt), scene)
@@ -233,7 +233,7 @@ def one_step_zone(
 ) -> StickZone[Array]:
     """Stick zones by the paper's consistency conditions, eqs. (17) and (18), m; arrays of the broadcast shape.
 
-    The conditions go from load point to load point in a single step. Where slip turns round on the way, gradual loads
+    The conditions go from load point to load point in a single step. Where slip reverses on the way, gradual loads
     have another stick zone: :func:`partialslip.halfplane.stick_zone`.
 
     Where the loads of an array make the contact slide, |dQ| >= 2 f P, the stick zone is NaN, and

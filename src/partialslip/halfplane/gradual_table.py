@@ -1,4 +1,4 @@
-"""Table of Hertz's stick zones under gradual loads whose slip turns round (docs/theory.md, section 7), for many loads
+"""Table of Hertz's stick zones under gradual loads whose slip reverses (docs/theory.md, section 7), for many loads
 at once. Scaled as in :mod:`partialslip.halfplane.shape`.
 
 Patches over s_f and w = sqrt(1 - Q_f), between border curves w(s_f) at which the zone's ends have kinks; Chebyshev
@@ -24,7 +24,7 @@ _BESIDE = 1e-6  # accuracy: of a patch: a place as near to it is inside, as roun
 
 
 def tabled(Qf: Array, sf: Array) -> StickZone[Array]:
-    """Stick zones under gradual loads (k,) whose slip turns round, for Hertz; NaN where the table has none.
+    """Stick zones under gradual loads (k,) whose slip reverses, for Hertz; NaN where the table has none.
 
     m and n are within 1e-6 of the solver (``benchmarks/gradual_table.py --check``), also where an inner zone slips that
     makes no difference in the end (``benchmarks/inner_table.py --check``).
@@ -62,7 +62,7 @@ def parted(Qf: Array, sf: Array) -> Mask:
 
 
 def again(Qf: Array, sf: Array, once: StickZone[Array]) -> Mask:
-    """Whether one step has the zone of gradual loads, although slip turns round: the ends slip the same way at last,
+    """Whether one step has the zone of gradual loads, although slip reverses: the ends slip the same way at last,
     and all points that slipped the other way before slip again. Then the left end of the zone has come as far as
     1 - 2 c*, where it is when the zone begins to drift."""
     return (once.s > 0) & (sf * (1 - once.left) <= 8 * Qf)

@@ -102,8 +102,8 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Change) -> Levels | st
 
 
 def _where_slip_turns(pressed: Contact, f: float, load: Load, cycle: Turning) -> Levels | str:
-    """q1 and q2 where slip turns round: known where every point slips in the steady cycle, and where the loads can be
-    followed from zero."""
+    """q1 and q2 under slip reversal: known if every point slips in the steady cycle, or if the loads can be followed
+    from zero."""
     if not cycle.permanent:
         return Levels(pressed, f, cycle.reached, cycle, 1)
     lost = f"{PATH_DEPENDENT}on the way, and the first loading decides what is locked in; use march"
@@ -164,8 +164,8 @@ def _before(load: Load, points: list[_Point], known: int) -> list[_Point]:
 
 
 def _bounded(load: Load, found: Levels) -> bool:
-    """Whether |q| <= f p up to the other load point and on the way back; if both ends slip the same way, |q| is largest
-    at a load point."""
+    r"""Whether \|q\| <= f p throughout the cycle, not at the load points only; if both ends slip the same way, \|q\| is
+    largest at a load point."""
     kinks = np.array(found.cycle.shape.strong_kinks)
     x = _PLACES if found.cycle.shape.convex else np.union1d(_PLACES, places_between(kinks, -1.0, 1.0))
     p, (q1, q2) = found.cycle.shape.pressure(x), found.unbounded(x)

@@ -82,8 +82,8 @@ class Loading(Change):
 
     @property
     def final(self) -> bool:
-        """Whether there is no gradual way to look for: nothing changes, slip does not reverse, or the tension varies
-        along x, where none is known."""
+        """Whether the single load step is the answer: nothing changes, slip does not reverse, or the tension varies
+        along x, for which no solution under gradual loads is known."""
         return self.nothing or bool(self.gf) or self.holds
 
     @property
@@ -92,7 +92,7 @@ class Loading(Change):
 
     @property
     def _simple(self) -> bool:
-        """Whether two inequalities tell if slip turns round: the tension does not vary along x, and nor does f."""
+        """Whether two inequalities decide on slip reversal: neither the tension nor f varies along x."""
         return not self.gf and self.shape.convex
 
     @property
@@ -121,7 +121,7 @@ class Loading(Change):
         """
         if self._pushed(np.clip([-1.0, 1.0, -self.sf / (2 * self.gf) if self.gf else 1.0], -1, 1)).min() >= 0:
             return False
-        zones = self._stages
+        zones = self._zones_at_stages
         if not (zones.s == self.zone.s).all() or np.isnan(zones.half_width).any():
             return True
         if (np.diff(zones.left, prepend=-1.0) < -_ROUNDING).any() or (
@@ -144,15 +144,15 @@ class Loading(Change):
         return self.Qf / 2 + y / 8 * self.sf + (y**2 - 0.5) / 8 * self.gf
 
     @cached_property
-    def _stages(self) -> StickZone[Array]:
-        """Stick zones at stages of the way; NaN where there is not one alone."""
+    def _zones_at_stages(self) -> StickZone[Array]:
+        """Stick zones at equal stages of the change of the loads; NaN where there are several."""
         shares = np.arange(1, _STAGES + 1) / _STAGES
         return stick_zones(shares * self.Qf, shares * self.sf, self.seen, shares * self.gf)
 
     @property
     def parts(self) -> bool:
         """Whether slip may reverse, as more than one zone sticks at a stage of the way."""
-        return self.turns_round and not self._simple and bool(np.isnan(self._stages.half_width).any())
+        return self.turns_round and not self._simple and bool(np.isnan(self._zones_at_stages.half_width).any())
 
 
 def loading(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, bound: int) -> Loading:
@@ -169,7 +169,7 @@ def loading(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float 
     turn = -1 if drive(Qf, gf) < 0 else 1
     mirror = turn * (-1 if at_middle < 0 else 1)
     found = Loading(pressed.friction_bound, turn * Qf, sf, turn, mirror, bound, _NOTHING, turn * gf)
-    return found if found.nothing else _solved(found)
+    return found if found.nothing else _with_stick_zone(found)
 
 
 def one_step(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> Loading:
@@ -181,10 +181,10 @@ def one_step(Qf: float, sf: float, shape: Shape, gf: float = 0.0) -> Loading:
     InputError
         If the tension varies too much along x for a single stick zone.
     """
-    return _solved(Loading(shape, Qf, sf, 1, 1, 2, _NOTHING, gf))
+    return _with_stick_zone(Loading(shape, Qf, sf, 1, 1, 2, _NOTHING, gf))
 
 
-def _solved(found: Loading) -> Loading:
+def _with_stick_zone(found: Loading) -> Loading:
     zone = steady_stick_zone(found.Qf, found.sf, found.seen, found.gf)
     if math.isnan(zone.half_width):
         raise InputError(f"load.sigma_slope: {TOO_STEEP}" if found.shape.convex else UNEVEN_FRICTION)

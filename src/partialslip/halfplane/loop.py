@@ -39,7 +39,7 @@ def hysteresis(contact: Contact, A: float, f: float, dQ: float, dsigma: float, c
 
         d(displacement)/dr = (A/pi) dQ ln(a/c) - (A/4) dsigma e,    d(moment)/dr = dQ e + (pi/8) dsigma c^2.
 
-    Where slip turns round between the load points, displacement and moment follow from the tractions of gradual loads
+    Where slip reverses between the load points, displacement and moment follow from the tractions of gradual loads
     (docs/theory.md, section 7); where these are not known, the loop is that of single steps.
 
     Parameters

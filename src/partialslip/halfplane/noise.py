@@ -71,7 +71,7 @@ def noise_of(scene: Scene, copies: int = COPIES) -> Noise | None:
 def _scatter(copies: Sequence[Scene]) -> tuple[float, float | None, float | None] | None:
     """Standard deviations of a, m and n, in a; None where a is not known."""
     try:
-        found = np.array([_solved(copy) for copy in copies])
+        found = np.array([_contact_and_stick_ends(copy) for copy in copies])
     except InputError:  # the contact leaves the table
         return None
     a, m, n = (found.std(axis=0, ddof=1) / found[:, 0].mean()).tolist()
@@ -82,7 +82,7 @@ def _worst(scatter: tuple[float, float | None, float | None]) -> float:
     return max(each for each in scatter if each is not None)
 
 
-def _solved(scene: Scene) -> Array:
+def _contact_and_stick_ends(scene: Scene) -> Array:
     """a, m and n, m; NaN for m and n without a closed form."""
     pressed, load = contact(scene), scene.load
     ends = np.nan, np.nan

@@ -212,7 +212,8 @@ def double_exponential(count: int, span: float = 3.2) -> tuple[Array, Array, Arr
 
 @functools.cache
 def _rule_for(ends: int) -> tuple[Array, Array, Array]:
-    """Rule for each piece between so many ``ends``: many pieces are short and have weak kinks, so fewer points do."""
+    """Tanh-sinh rule for each piece of an integral between ``ends`` piece ends: the more pieces, the shorter they are
+    and the weaker their kinks, and the fewer nodes suffice."""
     return double_exponential(*next(rule for most, rule in _RULES if ends <= most))
 
 

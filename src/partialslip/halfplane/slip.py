@@ -31,7 +31,7 @@ class Worn(NamedTuple):
     error: float
 
     def turned(self, mirror: int, turn: int) -> "Worn":
-        """The same with x mirrored (``mirror`` -1), and the slip turned round (``turn`` -1)."""
+        """Slip mirrored in x (``mirror`` -1) and with opposite sign (``turn`` -1)."""
         return self._replace(x=mirror * self.x[::mirror], slip=turn * self.slip[::mirror])
 
 

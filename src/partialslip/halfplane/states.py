@@ -57,14 +57,14 @@ class Around:
         InputError
             If the state at a phase has no closed form.
         """
-        return self.fields.at(Points.of(x, y), [self._at(phase) for phase in phases.tolist()])
+        return self.fields.at(Points.of(x, y), [self._state_at(phase) for phase in phases.tolist()])
 
     def surface(self, x: Array) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
         return self.fields.surface(x)
 
-    def _at(self, phase: float) -> StressState:
-        """State at a phase: criteria ask for the stresses of the same phases at one group of points after another."""
+    def _state_at(self, phase: float) -> StressState:
+        """State at a ``phase``, stored: criteria evaluate the same phases at one group of points after another."""
         if phase not in self._known:
             self._known[phase] = self._state(phase)
         return self._known[phase]
@@ -124,14 +124,14 @@ def without_shear(scene: Scene, ways: Ways | None = None) -> Around:
     """Stresses of bodies that are pressed together without any shear traction; ``ways`` between the load points, where
     they are known."""
     ways = ways or PressurePath.both(scene)
-    return Around(scene.load, Fields(scene.friction.f, _ends(scene, ways)), _Pressed(ways))
+    return Around(scene.load, Fields(scene.friction.f, _states_without_shear(scene, ways)), _Pressed(ways))
 
 
 def sliding_state(scene: Scene, ways: Ways | None = None) -> Around | None:
     """Stresses at the load points of a contact that slides at both, with q = f p, as of :func:`without_shear`; None
     where Q is larger, or smaller at a load point: q is then not known."""
     found, ways = [], ways or PressurePath.both(scene)
-    for point, state in zip(scene.load.ends, _ends(scene, ways), strict=True):
+    for point, state in zip(scene.load.ends, _states_without_shear(scene, ways), strict=True):
         Q, contact = scene.load.points[point][0], state.pressed
         f = contact.f
         if abs(abs(Q) - f * contact.P) > _SLIDING * f * contact.P:
@@ -142,7 +142,7 @@ def sliding_state(scene: Scene, ways: Ways | None = None) -> Around | None:
     return Around(scene.load, Fields(f, tuple(found)), _Pressed(ways), "the contact slides")
 
 
-def _ends(scene: Scene, ways: Ways) -> tuple[StressState, StressState]:
+def _states_without_shear(scene: Scene, ways: Ways) -> tuple[StressState, StressState]:
     """States at load points 1 and 2 without shear traction."""
     path, load = ways[0], scene.load
     contacts = (path.begin, path.end) if scene.presses_anew else (path.begin,) * 2

@@ -63,7 +63,7 @@ def stick_zones(
             slope = gf.ravel()[part] if sloped else None
             # where there is no stick zone, iterates reach the contact's right end
             with np.errstate(divide="ignore" if sloped else None, invalid="ignore" if sloped else None):
-                edge[part], c[part] = _solve(flat_Qf[part], flat_sf[part], shape, slope, checked)
+                edge[part], c[part] = _edge_and_centre(flat_Qf[part], flat_sf[part], shape, slope, checked)
     centre, s = np.abs(edge) + c - 1, np.where(edge < 0, -1, 1)
     return StickZone(centre.reshape(Qf.shape), c.reshape(Qf.shape), s.reshape(Qf.shape))
 
@@ -76,10 +76,12 @@ def drive(Qf: Array | float, gf: Array | float) -> Array | float:
 
 def transition(Qf: Array | float, shape: Shape) -> Array:
     """dsigma/(f p0) at which small tension ends because the left slip zone vanishes (Hertz: paper, eq. (23))."""
-    return _at(shape, 0.0, _touching(np.asarray(Qf, float), shape)).sf
+    return _conditions(shape, 0.0, _touching(np.asarray(Qf, float), shape)).sf
 
 
-def _solve(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None, checked: bool = True) -> tuple[Array, Array]:
+def _edge_and_centre(
+    Qf: Array, sf: Array, shape: Shape, gf: Array | None = None, checked: bool = True
+) -> tuple[Array, Array]:
     """Solve for (s * edge, c) of each pair of loads by Newton's method, by bracketing where it does not converge; None
     for ``gf`` stands for zeros.
 
@@ -95,7 +97,7 @@ def _solve(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None, checked:
         if not len(active):
             break
         e, width = edge[active], c[active]
-        at = _at(shape, e, width, _of(gf, active))
+        at = _conditions(shape, e, width, _of(gf, active))
         dQf, dsf = Qf[active] - at.Qf, sf[active] - at.sf
         to_n, to_edge = -(dQf / 2 + width * dsf / 8) / at.right, (dQf / 2 - width * dsf / 8) / at.left
         # step of log c; for large tension in a form without cancellation at small c
@@ -124,7 +126,7 @@ def _holds(edge: Array, c: Array, Qf: Array, sf: Array, shape: Shape, gf: Array)
     """Whether the loads are those of the stick zones, whose ends are stiff, \\|dq\\| <= 2 f p in them, and all points
     beside them slip: where the tension or f varies too much along x, points inside slip before the ends do, or points
     in slip zones stick."""
-    at, s = _at(shape, edge, c, gf), np.where(edge < 0, -1, 1)
+    at, s = _conditions(shape, edge, c, gf), np.where(edge < 0, -1, 1)
     found = (np.abs(at.Qf - Qf) < _HELD) & ((np.abs(at.sf - sf) < _HELD * np.maximum(sf, 8)) | (c <= NARROWEST))
     found &= (at.right > 0) & (at.left > 0) & (c <= 1)
     zones = StickZone(np.abs(edge) + c - 1, c, s)
@@ -153,7 +155,7 @@ def _bracketed(Qf: Array, sf: Array, shape: Shape, gf: Array | None = None) -> t
     """Solve for (s * edge, c) by two nested root searches on decreasing functions."""
     touching = _touching(Qf, shape, gf)
     edge, c = np.empty_like(Qf), np.empty_like(Qf)
-    small = sf <= _at(shape, 0.0, touching, gf).sf
+    small = sf <= _conditions(shape, 0.0, touching, gf).sf
     if small.any():
         edge[small], c[small] = _bracketed_small(Qf[small], sf[small], shape, _of(gf, small))
     if not small.all():
@@ -169,16 +171,16 @@ def _bracketed_small(Qf: Array, sf: Array, shape: Shape, gf: Array | None) -> tu
 
     def edge(c: Array, sf: Array, *gf: Array) -> Array:
         def excess(way: Array, c: Array, sf: Array, *gf: Array) -> Array:
-            return _at(shape, (1 - c) * way, c, *gf).sf - sf
+            return _conditions(shape, (1 - c) * way, c, *gf).sf - sf
 
         return (1 - c) * _root(excess, 0 * c, last + 0 * c, c, sf, *gf)
 
     def excess(log_c: Array, Qf: Array, sf: Array, *gf: Array) -> Array:
         c = np.exp(log_c)
-        return _at(shape, edge(c, sf, *gf), c, *gf).Qf - Qf
+        return _conditions(shape, edge(c, sf, *gf), c, *gf).Qf - Qf
 
     low = math.log(NARROWEST) + 0 * sf
-    widest = _root(lambda log_c, sf, *gf: _at(shape, 0.0, np.exp(log_c), *gf).sf - sf, low, 0 * sf, sf, *slope)
+    widest = _root(lambda log_c, sf, *gf: _conditions(shape, 0.0, np.exp(log_c), *gf).sf - sf, low, 0 * sf, sf, *slope)
     c = np.exp(_root(excess, low, widest, Qf, sf, *slope))
     return edge(c, sf, *slope), c
 
@@ -192,13 +194,13 @@ def _bracketed_large(Qf: Array, sf: Array, touching: Array, shape: Shape, gf: Ar
         def excess(way: Array, c: Array, Qf: Array, *gf: Array) -> Array:
             # in the middle of an even pressure dQ = 0, unless the tension varies along x
             middle = shape.even & (way == 1) & (not gf)
-            return np.where(middle, 0.0, _at(shape, (c - 1) * way, c, *gf).Qf) - Qf
+            return np.where(middle, 0.0, _conditions(shape, (c - 1) * way, c, *gf).Qf) - Qf
 
         return (c - 1) * _root(excess, 0 * c, last + 0 * c, c, Qf, *gf)
 
     def excess(log_c: Array, Qf: Array, sf: Array, *gf: Array) -> Array:
         c = np.exp(log_c)
-        return _at(shape, edge(c, Qf, *gf), c, *gf).sf - sf
+        return _conditions(shape, edge(c, Qf, *gf), c, *gf).sf - sf
 
     c = np.exp(_root(excess, math.log(NARROWEST) + 0 * Qf, np.log(touching), Qf, sf, *slope))
     return edge(c, Qf, *slope), c
@@ -216,10 +218,12 @@ def _touching(Qf: Array, shape: Shape, gf: Array | None = None) -> Array:
         stiffness = 1.0 if gf is None else 1 + gf / 8
         return np.maximum(np.sqrt((1 - Qf) / stiffness), NARROWEST)  # paper, eq. (22)
     low, slope = math.log(NARROWEST) + 0 * Qf, () if gf is None else (gf,)
-    return np.exp(_root(lambda log_c, Qf, *gf: _at(shape, 0.0, np.exp(log_c), *gf).Qf - Qf, low, 0 * Qf, Qf, *slope))
+    return np.exp(
+        _root(lambda log_c, Qf, *gf: _conditions(shape, 0.0, np.exp(log_c), *gf).Qf - Qf, low, 0 * Qf, Qf, *slope)
+    )
 
 
-def _at(shape: Shape, edge: Array | float, c: Array, gf: Array | None = None) -> Conditions:
+def _conditions(shape: Shape, edge: Array | float, c: Array, gf: Array | None = None) -> Conditions:
     edge = edge + 0 * c
     s = np.where(edge < 0, -1, 1)
     found = shape.conditions(np.abs(edge), c, s)

@@ -88,7 +88,7 @@ class Shear:
 
 @dataclass(frozen=True)
 class TurnedShear:
-    """Shear traction ``share`` times that of ``change``, in which slip has turned round on the way, under the bulk
+    """Shear traction ``share`` times that of ``change``, in which slip has reversed on the way, under the bulk
     tension ``sigma`` (Pa)."""
 
     contact: Contact

@@ -40,7 +40,7 @@ def table_error(scene: Scene, pressed: Contact, cycle: Change | None) -> dict[st
     a = pressed.a
     angle = (np.arange(_NODES) + 0.5) / _NODES * np.pi
     x, weights = pressed.centre - a * np.cos(angle), np.sin(angle)
-    errors = {"a": abs(other.a - a) / a, "p": _apart(pressed.pressure(x), other.pressure(x), weights)}
+    errors = {"a": abs(other.a - a) / a, "p": _relative_l2(pressed.pressure(x), other.pressure(x), weights)}
     if not pressed.shape.even:
         moved = other.centre - pressed.centre + (other.a - a) * np.array([-1, 1])
         errors["left"], errors["right"] = (np.abs(moved) / a).tolist()
@@ -52,7 +52,7 @@ def table_error(scene: Scene, pressed: Contact, cycle: Change | None) -> dict[st
         dq, coarse_dq = (
             each.p0 * way.traction(each.scaled(x)) for each, way in ((pressed, cycle), (other, coarse_cycle))
         )
-        errors["q"] = _apart(dq, coarse_dq, weights)
+        errors["q"] = _relative_l2(dq, coarse_dq, weights)
     return {key: error / _LESS for key, error in errors.items()}
 
 
@@ -67,5 +67,5 @@ def _every_second(scene: Scene) -> Scene | None:
     return replace(scene, profile=Tabulated(x=x, gap=gap, tilt=profile.tilt))
 
 
-def _apart(values: Array, others: Array, weights: Array) -> float:
+def _relative_l2(values: Array, others: Array, weights: Array) -> float:
     return float(np.sqrt((values - others) ** 2 @ weights / (values**2 @ weights)))

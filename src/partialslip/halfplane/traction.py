@@ -45,7 +45,7 @@ def half_range(x: Array, zone: StickZone[float], shape: Shape, gf: float = 0.0) 
     sticks = (x > zone.left) & (x < zone.right)
     if sticks.any():
         y = x[sticks]
-        result[sticks] = _inside(y, zone, shape)
+        result[sticks] = _shear_in_stick(y, zone, shape)
         if gf:
             result[sticks] -= gf / 8 * np.sqrt((zone.right - y) * (y - zone.left))
     return result
@@ -93,7 +93,7 @@ def inside(zones: StickZone[Array], y: Array, shape: Shape, gf: Array) -> tuple[
     x, half = centre + c * y, c * np.sqrt((1 - y) * (1 + y))
     p, h = shape.pressure(x), -gf[:, None, None] / 8 * half
     for side, sign in ((1, 1), (-1, s)):
-        # the integral of p(x) between the ends of the slip zone is an arc tangent, see _inside
+        # the integral of p(x) between the ends of the slip zone is an arc tangent, see _shear_in_stick
         gap = np.maximum(1 - side * centre - c, 0.0)
         arc = 2 * np.arctan(np.sqrt(gap / (gap + 2 * c) * (1 + side * y) / (1 - side * y)))
         t, _, weights = shape.rule(zones.left + 1, zones.half_width, side)
@@ -102,7 +102,7 @@ def inside(zones: StickZone[Array], y: Array, shape: Shape, gf: Array) -> tuple[
     return p[..., 0], h[..., 0], half[..., 0]
 
 
-def _inside(x: Array, zone: StickZone[float], shape: Shape) -> Array:
+def _shear_in_stick(x: Array, zone: StickZone[float], shape: Shape) -> Array:
     """dq/(2 f p0) in the stick zone; of a great many points interpolated, as it is smooth there, whatever p is."""
     nodes = sum(len(shape.rule(1 + zone.centre - zone.half_width, zone.half_width, side).t) for side in (1, -1))
     if len(x) * nodes < _PLENTY:

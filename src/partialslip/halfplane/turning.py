@@ -1,4 +1,4 @@
-"""Half a steady cycle in which slip turns round, under gradual loads (docs/theory.md, section 7). Scaled: lengths by a,
+"""Half a steady cycle in which slip reverses, under gradual loads (docs/theory.md, section 7). Scaled: lengths by a,
 tractions by f p0, slip by A f p0 a."""
 
 import math
@@ -26,8 +26,8 @@ _HELD = 1e-6  # limit: f p0: violation of a condition above which a way with a s
 
 @dataclass(frozen=True)
 class Turning(Change):
-    """Half a steady cycle in which slip turns round: the change ``once`` of the loads in a single step, which does not
-    hold, and the ``way`` of gradual loads, for positive changes."""
+    """Half a steady cycle with slip reversal, for positive changes: the solution ``way`` under gradual loads, and the
+    single load step ``once``, which is wrong there."""
 
     once: Loading
     way: HalfCycle
@@ -105,9 +105,9 @@ class Turning(Change):
 
 @dataclass(frozen=True, eq=False)
 class Turned:
-    """Shear traction where slip has turned round: ``factor`` times the tractions ``q`` less those ``before`` (None:
-    zero), and the ends of the interval of points that have ``never`` slipped (None if there are none), for positive
-    changes of the loads; ``turn`` and ``mirror`` as of :class:`Turning`."""
+    """Shear traction after slip reversal, ``factor`` (``q`` - ``before``) (None: zero), and the ends of the interval of
+    points that ``never`` slip (None if all do), for positive changes of the loads; ``turn`` and ``mirror`` as of
+    :class:`Turning`."""
 
     turn: int
     mirror: int
@@ -138,10 +138,12 @@ class Turned:
 def half_cycle(
     pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, parts: bool = True
 ) -> Change:
-    """Half a steady cycle between loads that change by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m), of any
-    sign, with |dQ| < 2 f P. Where slip turns round and the gradual way is not known, the single step, which does not
-    hold (:attr:`Loading.holds`). Without ``parts`` a slip zone inside the stick zone is not followed, and the way has
-    no certificate: for differences between pressures that are nearly the same.
+    r"""Half a steady cycle between loads that change by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m), of any
+    sign, \|dQ\| < 2 f P.
+
+    Under slip reversal the solution of gradual loads; where this is not known, the single load step, which does not
+    hold (:attr:`Loading.holds`). Without ``parts`` an inner slip zone is not followed and the solution has no
+    certificate: enough for differences between nearly equal pressures.
 
     Raises
     ------

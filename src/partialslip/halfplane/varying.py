@@ -18,7 +18,7 @@ from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 
 _STAGES = 16  # accuracy: of the way from load point to load point
-_NEAR = 0.5 ** np.arange(5, 15)  # from either end of a way: an end of the stick zone may turn round shortly before
+_NEAR = 0.5 ** np.arange(5, 15)  # from either end of a way: an end of the stick zone may reverse shortly before
 _STOPS = np.unique([*np.arange(1, _STAGES) / _STAGES, *_NEAR, *(1 - _NEAR), 1.0])
 _ROUNDING = 1e-9  # accuracy: lengths in a, tractions in f p0
 _EQUAL = 1e-12  # accuracy: relative difference of rates that is rounding
@@ -128,13 +128,13 @@ class Cycle:
         def between(stages: list[PressureStage], before: Array) -> list[tuple[Array, Array]]:
             return [(f * now.pressure(x), before + change.within(mean, f, x)) for now, mean, change in stages]
 
-        forth, back = self._stages
+        forth, back = self._stages_between
         ways = [first, *between(forth, 0 * x), second], [second, *between(back, dq), first]
         rooms = [[_least(np.array([bound + sign * moved for bound, moved in way])) for way in ways] for sign in (1, -1)]
         return np.array([[-1.0], [1.0]]) * np.min(rooms, axis=1)
 
     @functools.cached_property
-    def _stages(self) -> tuple[list[PressureStage], list[PressureStage]]:
+    def _stages_between(self) -> tuple[list[PressureStage], list[PressureStage]]:
         """Stages between the load points, from 1 to 2 and back; none where there is no slip or slip reverses."""
         if not self.change or self.turns_round:
             return [], []
@@ -272,7 +272,7 @@ def _exceeds(path: PressurePath, f: float) -> Array:
 
 
 def _turns(path: PressurePath, f: float, change: Loading) -> bool:
-    """Whether slip turns round on the way: the stick zones of the stages do not shrink, or not always with the slip of
+    """Whether slip reverses on the way: the stick zones of the stages do not shrink, or not always with the slip of
     the whole ``change``, or slip begins in the wrong direction."""
     if _goes_back(path, f, path.stage(1.0)):
         return True

@@ -22,18 +22,14 @@ def stick_zone(
     *,
     checked: bool = True,
 ) -> StickZone[Array]:
-    """Stick zones of the steady state under gradual loads, m; arrays of the broadcast shape.
+    r"""Stick zones of the steady state under gradual loads, m; arrays of the broadcast shape.
 
-    A stick zone is the zone of the tractions: \\|dq\\| is less than 2 f p between the load points. Where slip does not
-    turn round on the way it follows from the consistency conditions (:func:`one_step_zone`), a million in about a
-    second. Elsewhere (docs/theory.md, section 7) arrays of loads of a Hertz contact take their zones from a table,
-    within 1e-6 a of the solver; under other profiles each pair of loads takes the solver, about half a second. Where a
-    zone inside the stick zone slips, too, the table has only loads up to 9.2 f p0 under which all points that slipped
-    inside slip again at the left. Of such loads the solver takes one to twenty seconds a pair: an array has NaN there,
-    at once, and only a single pair of loads is solved.
-
-    Where the loads of an array make the contact slide, \\|dQ\\| >= 2 f P, the stick zone is NaN, and
-    :attr:`StickZone.slides` is true. Numbers give numbers; a single pair of loads that slides is an error.
+    A point is in the stick zone if \|dq\| < 2 f p between the load points. Without slip reversal the zone follows from
+    the consistency conditions (:func:`one_step_zone`), about 1e6 pairs of loads per second. With slip reversal
+    (docs/theory.md, section 7) arrays of loads of a Hertz contact take it from a table, within 1e-6 a; other profiles
+    need the solver, 0.5 s a pair. An inner slip zone is in the table up to 9.2 f p0 if all its points slip again at the
+    left; elsewhere an array has NaN, and a single pair takes the solver 1 to 20 s. Loads with \|dQ\| >= 2 f P slide:
+    NaN and :attr:`StickZone.slides` in an array, an error for a single pair.
 
     Parameters
     ----------
@@ -76,7 +72,7 @@ def stick_zone(
         turned[:] = False
     parts = turned.ndim == 0 or not contact.friction_bound.convex
     for index in map(tuple, np.argwhere(turned)):
-        known, mirror = _solved(contact, [float(load[index]) for load in loads], parts)
+        known, mirror = _zone_and_mirror(contact, [float(load[index]) for load in loads], parts)
         if turned.ndim == 0 and np.isnan(known.half_width):
             raise InputError(
                 f"dQ = {dQ_}, dsigma = {dsigma_}: slip turns round on the way, and the zone of gradual loads is not "
@@ -87,7 +83,7 @@ def stick_zone(
     return StickZone(centre[()], half_width[()], s[()])
 
 
-def _solved(contact: Contact, loads: list[float], parts: bool) -> tuple[StickZone[float], int]:
+def _zone_and_mirror(contact: Contact, loads: list[float], parts: bool) -> tuple[StickZone[float], int]:
     """The stick zone under ``loads``, for positive changes, and -1 if x is mirrored; NaN if it is not known, or,
     without ``parts``, if a zone inside slips."""
     try:

@@ -124,19 +124,6 @@ def off_cells(forces: Array, places: Array) -> PPoly:
     return PPoly(resultant.c, places)
 
 
-def norm_parts(vertices: Array, loads: Array, cells: Array) -> Array:
-    """Parts (c,) of the L2 norm of the means over ``cells`` (c + 1,) of forces ``loads`` (n,) between ``vertices``
-    (n + 1,)."""
-    resultant = np.concatenate([[0.0], np.cumsum(loads)])
-    return np.diff(np.interp(cells, vertices, resultant)) / np.sqrt(np.diff(cells))
-
-
-def relative_change(found: Array, others: Array, least: float) -> float:
-    """L2 distance of two traction's :func:`norm_parts`, relative to the norm of ``found`` or to the ``least`` one."""
-    size = max(float(np.linalg.norm(found)), least)
-    return float(np.linalg.norm(others - found)) / size if size > 0 else 0.0
-
-
 def forces(shape: Shape, vertices: Array) -> Array:
     """Normal forces (c,) on the cells of [-1, 1] between ``vertices`` (c + 1,), as fractions of P.
 

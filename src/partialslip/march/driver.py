@@ -4,15 +4,14 @@ Each of these problems solves p and q on given cells, tells the errors of these 
 Scaled: lengths by the unit of the problem, forces by P, displacements by A P.
 """
 
-import math
 from abc import abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Generic, TypeVar
 
 import numpy as np
 
-from partialslip.friction.history import SHEARS, History
+from partialslip.friction.history import History
 from partialslip.friction.load_path import Path
 from partialslip.friction.regime import doubts
 from partialslip.friction.restart import begun, end_state
@@ -27,6 +26,12 @@ from partialslip.scene import Scene
 from partialslip.tools.arrays import Array, Indices
 from partialslip.tools.bars import BARS
 
+# accuracy: growth of cells, mesh by mesh: sqrt(2), for :meth:`CellProblem.mesh_errors`. On the first mesh nothing is
+# known of the stick zone; out of phase the second one is to find it, too
+_GROWTHS = (0.28, 0.28, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 0.0175)
+MESHES = tuple((4e-3 * growth, growth) for growth in _GROWTHS)  # accuracy: (cell size at the ends, in a; growth)
+COARSE = 3  # accuracy: of these, before the first one whose errors are estimated
+_TIMES = 2.0  # accuracy: errors over changes (measured: benchmarks/estimates.py)
 _LEFT = 3.0  # cost: times the seconds of the next mesh that must be left: finite elements follow in the same run
 
 
@@ -89,12 +94,11 @@ class LastLevel:
 
 @dataclass(frozen=True)
 class Refined(OnMesh, Generic[L]):
-    """A ``level`` and the one ``before`` it, the ``place`` of its mesh among those of the problem, and its errors:
-    ``meshed`` are those due to the cells, ``stepped`` those due to the load steps."""
+    """A ``level`` and the one ``before`` it, and its errors: those ``meshed`` are due to the cells, those ``stepped``
+    to the load steps."""
 
     level: L
     before: L | None
-    place: float
     meshed: Errors = field(default_factory=Errors)
     stepped: Errors = field(default_factory=Errors)
 
@@ -115,16 +119,11 @@ class Refined(OnMesh, Generic[L]):
 class CellProblem(Refinable[Refined[L]]):
     """Bodies that are pressed together and sheared, on cells.
 
-    ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``sizes`` are
-    those of the cells at the ends of zones, in a, and their growth; on the first ``coarse`` ones ends are only found.
-    ``steps_count``: whether the errors of load steps leave less to those of the cells. ``nearly``: excess of errors up
-    to which the following mesh is halfway to the next one of ``sizes``; the second number is for errors of q, q1 and
-    q2 on later meshes.
+    ``origin`` and ``length`` (m) are those of scaled coordinates, ``path`` is that of the loads. ``steps_count``:
+    whether the errors of load steps leave less to those of the cells.
     """
 
-    coarse = 1
     steps_count = True
-    nearly = 0.0, 0.0
 
     def __init__(
         self,
@@ -133,11 +132,10 @@ class CellProblem(Refinable[Refined[L]]):
         clock: Clock,
         path: Path | None,
         frame: tuple[float, float],
-        sizes: Sequence[tuple[float, float]],
     ) -> None:
         self.scene, self.start, self.clock, self.path = scene, start, clock, path
         self.origin, self.length = frame
-        self.sizes, self.iterations = sizes, 0
+        self.iterations = 0
 
     def places(self, level: L) -> Array:
         """Ends of the cells, m."""
@@ -152,8 +150,17 @@ class CellProblem(Refinable[Refined[L]]):
         """Solve on the ``mesh`` after that of the ``level``."""
 
     @abstractmethod
-    def mesh_errors(self, level: L, before: L) -> Errors:
-        """Errors due to the cells of the ``level``, of ends in a and of tractions relative L2."""
+    def changes(self, level: L, other: L) -> Errors:
+        """Changes from the ``other`` level to this one, of ends in a and of tractions relative L2."""
+
+    def mesh_errors(self, level: L, before: L, earlier: L) -> Errors:
+        """Errors due to the cells of the ``level``: twice the changes since the level ``before``, whose cells are
+        sqrt(2) times as large, and no less than the changes since the ``earlier`` one, whose cells are twice as large.
+
+        An error C h^s changes by 2^(s/2) - 1 and 2^s - 1 of what is left of it: by all of it at s = 2 and s = 1.
+        """
+        late, early = self.changes(level, before), self.changes(level, earlier)
+        return {key: max(_TIMES * late[key], early.get(key, 0.0)) for key in late}
 
     @abstractmethod
     def step_errors(self, level: L) -> Errors:
@@ -164,36 +171,21 @@ class CellProblem(Refinable[Refined[L]]):
         return False
 
     def refined(self, before: Refined[L] | None) -> Refined[L]:
-        place, last = (self._place_after(before), before.level) if before else (0.0, None)
-        level = self.solve(last, self._mesh(place))
+        last, earlier = (before.level, before.before) if before else (None, None)
+        level = self.solve(last, MESHES[self.meshes])
         self.meshes += 1
         self.iterations += level.history.iterations if level.history else 0
-        if not last or self.meshes <= self.coarse:
-            return Refined(level, last, place)
-        return Refined(level, last, place, self.mesh_errors(level, last), self.step_errors(level))
+        if not last or not earlier or self.meshes <= COARSE:
+            return Refined(level, last)
+        return Refined(level, last, self.mesh_errors(level, last, earlier), self.step_errors(level))
 
     def finished(self, found: Refined[L]) -> bool:
-        if found.place == len(self.sizes) - 1 or (found.errors and max(self._excess(found).values()) <= 1):
+        if self.meshes == len(MESHES) or (found.errors and max(self._excess(found).values()) <= 1):
             return True
-        cells = self.cells(found.level, self._mesh(self._place_after(found)))
-        return self.too_large(found.level, len(cells))
+        return self.too_large(found.level, len(self.cells(found.level, MESHES[self.meshes])))
 
     def fits(self, pace: Pace, found: Refined[L]) -> bool:
         return not found.errors or pace.fits(_LEFT)
-
-    def _mesh(self, place: float) -> tuple[float, float]:
-        """Size and growth at a ``place`` in ``sizes``, between two of them their geometric mean."""
-        (size, growth), (finer, less) = self.sizes[math.floor(place)], self.sizes[math.ceil(place)]
-        return math.sqrt(size * finer), math.sqrt(growth * less)
-
-    def _place_after(self, found: Refined[L]) -> float:
-        """Place of the next mesh: halfway to the next of ``sizes`` if errors exceed what is allowed by so little that
-        such a mesh is likely to do."""
-        place, most = found.place, dict.fromkeys(found.meshed, self.nearly[0])
-        if self.meshes > self.coarse + 1:
-            most |= {key: self.nearly[1] for key in SHEARS if key in most}
-        near = all(each <= most[key] for key, each in self._excess(found).items())
-        return place + 0.5 if found.errors and place % 1 == 0 and near else math.floor(place) + 1
 
     def _excess(self, found: Refined[L]) -> Errors:
         """Errors due to the cells over what is allowed: at most 1 if finer cells are not needed, or of no use: they do

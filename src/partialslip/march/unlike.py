@@ -15,7 +15,7 @@ from partialslip.friction import coulomb_coupled
 from partialslip.friction.active_set import Solution
 from partialslip.friction.contact_line import common_ends
 from partialslip.friction.even_gap import PARABOLA, even_gap
-from partialslip.friction.history import SHEARS, certificate, last_cycle_change
+from partialslip.friction.history import certificate, last_cycle_change
 from partialslip.friction.load_path import Path, load_path, stretched
 from partialslip.friction.normal import press
 from partialslip.friction.pressing import Pressed
@@ -23,8 +23,8 @@ from partialslip.friction.regime import steady_state, steps_of_coupled
 from partialslip.friction.step_errors import Errors, along_path, more_steps, other_steps, pressed_together, summed
 from partialslip.friction.work import told_by_finer
 from partialslip.halfplane.tractions import CoupledTractions
-from partialslip.march import driver
-from partialslip.march.cells import cells_around, contact_line, friction_on, norm_parts, on_cells, relative_change
+from partialslip.march import changes, driver
+from partialslip.march.cells import cells_around, contact_line, friction_on, on_cells
 from partialslip.march.driver import LastLevel
 from partialslip.march.pressing import NormalLoads
 from partialslip.march.punch_growth import OnCells, PunchGrowth, relative
@@ -34,16 +34,11 @@ from partialslip.scene import Scene
 from partialslip.scene.materials import Material
 from partialslip.scene.plan import Plan
 from partialslip.tools.arrays import Array
-from partialslip.tools.bars import BARS, LEAST_SHEAR
+from partialslip.tools.bars import BARS
 
-_MESHES = ((1e-2, 0.2), (1e-3, 0.1), (3e-4, 0.05), (1e-4, 0.025))  # accuracy: (cell size at the ends, in a; growth)
 _BEYOND = 1.2  # accuracy: extent of the cells, in that of the contact without coupling ...
 _WIDER = 1.5  # cost: ... and how many times wider they are made where they do not enclose the contact
 _ROUNDING = 1e-12  # accuracy: relative difference of two compliances that is rounding
-# accuracy: Errors of q1 and q2 as parts of their change from mesh to mesh: the growth halves, and what pressing locks
-# in has errors of about the order 1.5 in the growth, mostly 0.46 to 0.56 of the change, but up to 1.2 of it in bodies
-# that are only pressed (measured); half for all others.
-_OF_CHANGE = {"q1": 1.2, "q2": 1.2}
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
@@ -90,7 +85,7 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
     steps_count = False  # they are as many as their errors call for
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock) -> None:
-        super().__init__(scene, start, clock, load_path(scene, plan, start), (scene.origin, scene.length), _MESHES)
+        super().__init__(scene, start, clock, load_path(scene, plan, start), (scene.origin, scene.length))
         self.beta = dundurs(scene) if plan.needs("coupling") and plan.needs("friction") else 0.0
         self.gap = None if start else even_gap(scene, self.length)
         self.punch = PunchGrowth.of(self.beta, scene.friction.f) if self.beta and self.gap else None
@@ -103,7 +98,7 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
 
     def solve(self, level: UnlikeLevel | None, mesh: tuple[float, float]) -> UnlikeLevel:
         found = self._enclosed(level, mesh)
-        if level and not self.followed and self.path and self.path.moves and self.beta:
+        if self.meshes >= driver.COARSE and not self.followed and self.path and self.path.moves and self.beta:
             return self._in_enough_steps(found)
         return found
 
@@ -131,8 +126,22 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
                 return found
             wider *= _WIDER
 
-    def mesh_errors(self, level: UnlikeLevel, before: UnlikeLevel) -> Errors:
-        return _mesh_errors(level, before, self)
+    def changes(self, level: UnlikeLevel, other: UnlikeLevel) -> Errors:
+        a, meshes = level.a[self.scene.largest - 1], (level.vertices, other.vertices)
+        found = dict.fromkeys(("a", "left", "right"), changes.of_ends(np.array(level.ends), np.array(other.ends)) / a)
+        found["p"] = changes.of_traction(meshes[0], level.pressing.x, meshes[1], other.pressing.x)
+        if level.stick and other.stick:
+            zones = (np.array([stick.left, stick.right]) for stick in (level.stick, other.stick))
+            found |= dict.fromkeys("mn", changes.of_ends(*zones) / a)
+        if level.history and other.history:
+            found |= changes.of_shear(meshes[0], level.history, meshes[1], other.history)
+        return found
+
+    def mesh_errors(self, level: UnlikeLevel, before: UnlikeLevel, earlier: UnlikeLevel) -> Errors:
+        errors = super().mesh_errors(level, before, earlier)
+        if self.punch and level.history and not level.history.path.moves:  # its stick zone is that of all meshes
+            errors |= {key: errors[key] + 2 * self.punch.off for key in "mn"}
+        return errors
 
     def step_errors(self, level: UnlikeLevel) -> Errors:
         return summed(_step_errors(level), self.followed)
@@ -244,41 +253,6 @@ def _solve_on(problem: UnlikeBodies, path: Path | None, vertices: Array, near: f
             kinks += line.on(on).kinks_at(q[on], bound[on])
         within = tuple(kink for kink in kinks if both[0] < kink < both[1])
         return UnlikeLevel(vertices, history, stick, pressing, pressed, at_points, within)
-
-
-def _mesh_errors(level: UnlikeLevel, before: UnlikeLevel, problem: UnlikeBodies) -> Errors:
-    """Errors of the ends (in a), and of p, q, q1 and q2 (relative L2 of cell means), from the change since the mesh
-    ``before``."""
-    largest = problem.scene.largest - 1
-    a = level.a[largest]
-    errors = {"a": abs(a - before.a[largest]) / a}
-    for side, key in enumerate(("left", "right")):
-        errors[key] = max(abs(one[side] - other[side]) for one, other in zip(level.ends, before.ends, strict=True)) / a
-    errors["p"] = _apart(level, level.pressing.x, before, before.pressing.x, 0 * before.x)
-    if level.stick and before.stick:
-        errors["m"] = abs(level.stick.left - before.stick.left) / a
-        errors["n"] = abs(level.stick.right - before.stick.right) / a
-    if problem.punch and level.history and not level.history.path.moves:
-        # the stick zone is a known part of the contact, so that its ends move with those of the contact
-        errors["m"] = errors["n"] = 2 * problem.punch.off + problem.punch.stick * errors["a"]
-    if level.history and before.history:
-        bound = before.history.bound
-        errors |= {
-            key: _apart(level, of(level.history), before, of(before.history), (2 if key == "q" else 1) * bound)
-            for key, of in SHEARS.items()  # q is half of the change
-        }
-    return {key: _OF_CHANGE.get(key, 0.5) * error for key, error in errors.items()}
-
-
-def _apart(level: UnlikeLevel, forces: Array, before: UnlikeLevel, others: Array, bound: Array) -> float:
-    """Relative L2 difference of the means over the cells of the level ``before`` of ``forces`` and ``others``; shear is
-    not less than a part of ``bound``."""
-    cells = before.vertices
-    found, other, held = (
-        norm_parts(level.vertices, forces, cells),
-        *(norm_parts(cells, x, cells) for x in (others, bound)),
-    )
-    return relative_change(found, other, LEAST_SHEAR * float(np.linalg.norm(held)))
 
 
 def _step_errors(level: UnlikeLevel) -> Errors:

@@ -41,7 +41,7 @@ def amounts(results: Mapping[str, Result], units: Units = SI) -> tuple[list[str]
         values = [value(result) for result in found]
         largest = max((abs(each) for each in values if each is not None and math.isfinite(each)), default=0.0)
         if largest:
-            rows.append(_row(quantity, scale(largest, of, units), values))
+            rows.append(_quantity_row(quantity, scale(largest, of, units), values))
     if worn := [result.slip.dissipated for result in found if result.slip and result.slip.dissipated]:
         exponent, label = scale(max(worn), "J/m", units)
         works = [dissipated(result.slip, exponent) if result.slip else "none" for result in found]
@@ -58,7 +58,7 @@ def scale(size: float, of: Dimension, units: Units) -> tuple[int, str]:
     return next(((exp, prefix + label) for exp, prefix in PREFIXES if 1 <= size / 10.0**exp < 1000), (0, label))
 
 
-def _row(quantity: str, unit: tuple[int, str], values: list[float | None]) -> list[str]:
+def _quantity_row(quantity: str, unit: tuple[int, str], values: list[float | None]) -> list[str]:
     return [quantity, unit[1], *(_digits(value, unit[0]) for value in values)]
 
 
@@ -106,7 +106,7 @@ def answers(run: Run) -> list[tuple[str, str]]:
     the spacing of a given profile make has lines of its own.
     """
     result = run.results[run.answering]
-    own = [*_stick(run, result), *_points(run), *_noise(run), *_spacing(run), *_contact(run, result)]
+    own = [*_stick(run, result), *_profile_rows(run), *_noise(run), *_spacing(run), *_contact_rows(run, result)]
     return [*own, *_shears(run), *_stresses(run), *_plates(run), *_right_grip(run)]
 
 
@@ -137,13 +137,18 @@ def _stick(run: Run, result: Result) -> Iterator[tuple[str, str]]:
         yield "never slips", f"[{ends[0]}, {ends[1]}] {label}"
 
 
-def _points(run: Run) -> Iterator[tuple[str, str]]:
+def _profile_rows(run: Run) -> Iterator[tuple[str, str]]:
     """Yield the number of points of a measured profile, and the units in which they were read."""
     if not isinstance(run.scene.profile, Tabulated) or (known := run.scene.profile.measured) is None:
         return
     names = {factor: name for name, factor in reversed(LENGTHS.items())}
-    x, gap = (names.get(float(f"{unit:.12g}"), f"{unit:g} m") for unit in known.unit)
-    yield "points of the profile", f"{known.points} of {Path(known.file).name}, x in {x}, gap in {gap}"
+    x, gap = (names.get(float(f"{abs(unit):.12g}"), f"{abs(unit):g} m") for unit in known.unit)
+    told = f"{known.points} of {Path(known.file).name}, x in {x}, {'gap' if known.unit[1] > 0 else 'heights'} in {gap}"
+    if known.columns != (1, 2):
+        told += f", columns {known.columns[0]} and {known.columns[1]}"
+    if known.centre:
+        told += f", x = 0 at {run.scene.units.labelled(known.centre, 'm', 4)}"
+    yield "points of the profile", told
 
 
 def _noise(run: Run) -> Iterator[tuple[str, str]]:
@@ -168,7 +173,7 @@ def _scatter(deviations: Mapping[str, float | None]) -> str:
     return ", ".join(f"{key} +- {each:.1e} a" for key, each in known.items()) + " (standard deviation)"
 
 
-def _contact(run: Run, result: Result) -> Iterator[tuple[str, str]]:
+def _contact_rows(run: Run, result: Result) -> Iterator[tuple[str, str]]:
     error = _error_of(result, "a")
     exponent, label = _unit(run, result.a, "m")
     yield "a", f"{with_error(result.a, error * result.a, exponent)} {label}{_mark(error)}"

@@ -10,11 +10,10 @@ import numpy as np
 from partialslip.report.rows import shown_half_planes
 from partialslip.result import Result
 from partialslip.run import Run
-from partialslip.run.methods import METHODS
 from partialslip.scene import Friction, Scene, Tabulated
-from partialslip.scene.measured import read_points
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
+from partialslip.tools.methods import METHODS
 from partialslip.tools.output.svg import svg
 
 if TYPE_CHECKING:
@@ -111,11 +110,11 @@ def draw_tractions(
     unit, usual = (p0, "q/p0") if friction is None else (friction.f * p0, "q/(f p0)")
     shear = shear or usual
     if reference.m is not None and reference.n is not None and reference.steady:
-        whose = f", {_plain(leading)}" if len(results) > 1 else ""
+        whose = f", {_without_formula(leading)}" if len(results) > 1 else ""
         axes.axvspan(-reference.m / a, reference.n / a, color="0.88", lw=0, label=f"stick zone [-m, n]{whose}")
     shears = bool(reference.traction.dq.any())
     for name, result in results.items():
-        traction, label = result.traction, _plain(name)
+        traction, label = result.traction, _without_formula(name)
         if traction.cells is None:
             x, p, q = traction.x, traction.p, traction.dq / 2
             axes.plot(x / a, p / p0, color="0.45", lw=1, ls="--", label=f"p/p0, {label}")
@@ -135,7 +134,7 @@ def draw_tractions(
                     axes.plot(x / a, -bound * share / p0, **style)
                 axes.plot(x / a, q / unit, color="black", lw=1.4, label=f"{shear}, {label}")
         else:
-            x = _spread(result)
+            x = _marker_places(result)
             found = traction.at(x)
             marks = METHODS[name].marks if name in METHODS else _ALL
             axes.plot(x / a, found.p / p0, marks[0], ms=6, color="black", ls="", label=f"p/p0, {label}")
@@ -167,7 +166,7 @@ def _span(*ends: tuple[float, float]) -> tuple[float, float]:
     return min(lefts), max(rights)
 
 
-def _plain(name: str) -> str:
+def _without_formula(name: str) -> str:
     """Return a name that matplotlib takes for no formula."""
     return name.replace("$", r"\$")
 
@@ -182,7 +181,7 @@ def draw_errors(axes: "Axes", run: Run) -> None:
     first, f = next(iter(shown.values())), run.scene.friction.f
     a, p0 = first.a, first.p0
     for name, line in zip(run.comparisons, cycle(_ERROR_LINES)):
-        result, label = run.results[name], _plain(name)
+        result, label = run.results[name], _without_formula(name)
         x = result.traction.x[:: -(-len(result.traction.x) // _DRAWN)]
         found, true = result.traction.at(x), reference.traction.at(x)
         at_2 = _span(result.ends[1], reference.ends[1])  # p is that of load point 2
@@ -218,7 +217,7 @@ def _legend_above(axes: "Axes") -> None:
                 handlelength=1.6, columnspacing=1.2, borderaxespad=0.2)  # fmt: skip
 
 
-def _spread(result: Result) -> Array:
+def _marker_places(result: Result) -> Array:
     """Return some of the nodes, m, about evenly spread over the contact."""
     x = result.traction.x
     nearest = np.searchsorted((x[1:] + x[:-1]) / 2, np.linspace(x[0], x[-1], _MARKERS))
@@ -234,7 +233,7 @@ def profile_svg(scene: Scene) -> str:
     if not isinstance(profile, Tabulated) or profile.measured is None:
         return ""
     try:
-        x, gap = read_points(profile.measured.file, profile.measured.unit)
+        x, gap = profile.measured.read()
     except InputError:
         return ""
     unit, length = "mm", 1e-3

@@ -25,7 +25,7 @@ _FEWEST = 8  # display: steps of a cycle whose loop is drawn: the area of fewer 
 _ENOUGH = 16  # display: load steps between load points from which the area is not worth a remark
 
 
-def _known(run: Run) -> tuple[Result, Plates] | None:
+def _result_with_plates(run: Run) -> tuple[Result, Plates] | None:
     """Return the first result of ``run`` that knows the plates, and these; None if none does."""
     return next(((result, result.plates) for result in run.results.values() if result.plates), None)
 
@@ -33,7 +33,7 @@ def _known(run: Run) -> tuple[Result, Plates] | None:
 def loop_csv(run: Run) -> str:
     """Return the loop as CSV, one row per point, in the scene's units, with the number of the load point where it is
     at one; empty if no method knows the plates."""
-    known, units = _known(run), run.scene.units
+    known, units = _result_with_plates(run), run.scene.units
     if not known:
         return ""
     moved, Q = known[1].loop.T
@@ -59,7 +59,7 @@ def _load_points(plates: Plates) -> list[int | str]:
 
 def loop_remark(run: Run) -> str:
     """Return what the loop of ``run`` leaves out, as text; empty if it is fine enough."""
-    if not (known := _known(run)):
+    if not (known := _result_with_plates(run)):
         return ""
     result, plates = known
     steps = len(plates.loop) - 1
@@ -83,7 +83,7 @@ def _open(plates: Plates) -> bool:
 
 def loop_rows(run: Run) -> list[tuple[str, str]]:
     """Return pairs of quantity and value: how stiff the plates are, the work of Q and what friction consumes."""
-    if not (known := _known(run)):
+    if not (known := _result_with_plates(run)):
         return []
     (result, plates), units = known, run.scene.units
     along, across = (units.text(each, "Pa", 5) for each in plates.stiffness)
@@ -99,7 +99,7 @@ def loop_rows(run: Run) -> list[tuple[str, str]]:
 def loop_svg(run: Run) -> str:
     """Return the loop as SVG, in the units of the scene, and beside it the same without Q over the stiffness: what is
     left is wide enough to be seen, and has the same area. Empty if the loop has no area."""
-    known, units = _known(run), run.scene.units
+    known, units = _result_with_plates(run), run.scene.units
     if not known or not _open(known[1]):
         return ""
     plates = known[1]

@@ -155,9 +155,9 @@ class Record(ByMethod[ResultRecord], msgspec.Struct, frozen=True):
 
     @property
     def judged_again(self) -> "Record":
-        """The record with outcomes, and what is missed, concluded anew from the numbers of the record.
+        """Record with outcomes and missed quantities derived again from its numbers.
 
-        Comparisons with a reference that is none for the scene make no run pass.
+        A comparison whose reference is not the reference method of the scene makes no run pass.
         """
         told = {name: each.conditions for name, each in self.comparison.items()}
         known = {name: plain(conditions(each, told.get(name, ()))) for name, each in self.methods.items()}

@@ -11,7 +11,6 @@ from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.run.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
 from partialslip.run.judge.reference import error_of
-from partialslip.run.methods import METHODS
 from partialslip.scene import Scene
 from partialslip.scene.dimensions import DIMENSIONS
 from partialslip.scene.plan import Plan
@@ -19,6 +18,7 @@ from partialslip.scene.plausible import implausible as implausible
 from partialslip.scene.reading import scene_tables
 from partialslip.scene.units import SI, Dimension, Units
 from partialslip.tools.groups import grouped
+from partialslip.tools.methods import METHODS
 
 HEADINGS = ("quantity", "unit", "reference", "value", "error", "estimate", "bar", "")
 _MEANING = {

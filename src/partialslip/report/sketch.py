@@ -31,7 +31,7 @@ Position = tuple[float, float]
 
 def sketch_svg(scene: Scene) -> str:
     """Return the sketch of ``scene`` as SVG, not to scale."""
-    parts = [*_body(scene, "lower"), *_body(scene, "upper"), *_loads(scene), *_axes(scene)]
+    parts = [*_body_shapes(scene, "lower"), *_body_shapes(scene, "upper"), *_loads(scene), *_axes(scene)]
     frame = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH} {_HEIGHT}" width="{_WIDTH}" '
         f'height="{_HEIGHT}" font-family="sans-serif" font-size="14">'
@@ -39,7 +39,7 @@ def sketch_svg(scene: Scene) -> str:
     return with_dark_mode("\n".join([frame, *parts, "</svg>"])) + "\n"
 
 
-def _body(scene: Scene, name: str) -> list[str]:
+def _body_shapes(scene: Scene, name: str) -> list[str]:
     """Return the shapes of the lower or the upper body, with support and sizes."""
     body = scene.bodies.lower if name == "lower" else scene.bodies.upper
     way = 1.0 if name == "lower" else -1.0  # of the body's depth on the page

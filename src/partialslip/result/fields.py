@@ -165,10 +165,10 @@ class StressAt:
             0 to 1, or the method does not know the stresses at a phase.
         """
         stages = np.array(_LOAD_POINTS) if phases is None else _checked(phases)
-        found: Array = AtPoints(lambda x, y: self._inside(x, y, stages.ravel()))(x, y)
+        found: Array = AtPoints(lambda x, y: self._where_finite(x, y, stages.ravel()))(x, y)
         return found.reshape(*stages.shape, *found.shape[1:])
 
-    def _inside(self, x: Array, y: Array, phases: Array) -> Array:
+    def _where_finite(self, x: Array, y: Array, phases: Array) -> Array:
         known = np.isfinite(x) & np.isfinite(y)
         if known.all():
             return self.function(x, y, phases)

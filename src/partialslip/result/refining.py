@@ -47,7 +47,7 @@ class OnMesh(Protocol):
 
     @property
     def unknowns(self) -> str:
-        """How many there are, in words."""
+        """Number of unknowns, in words."""
 
     @property
     def errors(self) -> Mapping[str, float]:
@@ -58,14 +58,14 @@ S = TypeVar("S", bound=OnMesh)
 
 
 class Refinable(ABC, Generic[S]):
-    """What is solved on finer and finer meshes; ``clock`` counts the CPU seconds, and may have an allowance."""
+    """Problem that is solved on finer and finer meshes; ``clock`` counts the CPU seconds and may limit them."""
 
     clock: Clock
     meshes = 0  # made up to now
 
     @abstractmethod
     def refined(self, before: S | None) -> S:
-        """Solve on the next mesh, after that of ``before``, and estimate the errors where these can be told."""
+        """Solve on the mesh that follows that of ``before``; estimate the errors if two solutions allow it."""
 
     @abstractmethod
     def finished(self, found: S) -> bool:

@@ -36,10 +36,12 @@ EndSlip = Literal["forwards", "backwards", "never", "part of the cycle"]
 
 
 class SteadyState(NamedTuple):
-    """What a method finds of the steady state: ``regime``, ``centre`` and ``half_width`` of the stick zone (None if
-    nothing sticks), ``notes``, how the ends of the contact slip, where the pressure varies, and the ends of the zone
-    that never slips, (nan, nan) if there is none, None if it is not known. Lengths are in any one unit.
-    ``undetermined`` as in :class:`Result`."""
+    """Steady state found by a method; lengths in any one unit.
+
+    ``centre`` and ``half_width`` of the stick zone (None: nothing sticks); ``slips``: slip of the left and right
+    contact edge under varying pressure; ``permanent``: ends of the zone that never slips, (nan, nan) if there is no
+    such zone, None if not known. ``undetermined`` as in :class:`Result`.
+    """
 
     regime: Regime
     centre: float | None = None
@@ -50,7 +52,7 @@ class SteadyState(NamedTuple):
     undetermined: Mapping[str, str] = {}
 
     def placed(self, origin: float, length: float) -> "SteadyState":
-        """The same in m: ``length`` (m) is the unit, and the zero is at ``origin`` (m)."""
+        """Steady state in m, from lengths in the unit ``length`` (m) and x = 0 at ``origin`` (m)."""
         return self._replace(
             centre=None if self.centre is None else origin + self.centre * length,
             half_width=None if self.half_width is None else self.half_width * length,
@@ -168,7 +170,7 @@ class Result(Drawn):
     def of(
         cls, method: str, found: SteadyState, half_width: float, p0: float, traction: Traction, clock: Clock
     ) -> "Result":
-        """What every method finds; with :func:`dataclasses.replace` a method adds the rest.
+        """Result with the quantities that every method finds; :func:`dataclasses.replace` adds those of one method.
 
         Parameters
         ----------

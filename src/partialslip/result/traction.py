@@ -65,7 +65,7 @@ def largest(x: Array, p: Array) -> float:
 
 
 class Observed(NamedTuple):
-    """What the values of a table stand for, so that a reference is compared like with like.
+    """Meaning of the values of a table, for a comparison of like with like: sampled values, cell means or nodal values.
 
     Parameters
     ----------

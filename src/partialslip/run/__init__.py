@@ -19,7 +19,7 @@ from partialslip.result.traction import sliding
 from partialslip.run.judge import Comparison, Conclusion, Outcome, Verdict, compare, conditions, of_run
 from partialslip.run.judge.reference import ALL_EFFECTS, estimated, reference, reference_among
 from partialslip.run.judge.verdicts import missed_by
-from partialslip.run.methods import METHODS, Means, Progress
+from partialslip.run.methods import SOLVERS, Means, Progress
 from partialslip.scene import Effects, Scene
 from partialslip.scene.plan import Plan, plan, reduced
 from partialslip.scene.reading import AnyScene, as_scene
@@ -180,9 +180,9 @@ def chosen_methods(scene: Scene, methods: object = None) -> tuple[str, ...]:
     if methods is None:
         return default_methods(scene)
     named = [*methods] if isinstance(methods, Iterable) and not isinstance(methods, str) else [methods]
-    if not named or not all(isinstance(each, str) and each in METHODS for each in named):
+    if not named or not all(isinstance(each, str) and each in SOLVERS for each in named):
         shown = ", ".join(map(str, named)) or "none"
-        raise InputError(f"methods = {shown:.60}: must be one or several of {', '.join(METHODS)}")
+        raise InputError(f"methods = {shown:.60}: must be one or several of {', '.join(SOLVERS)}")
     return tuple(dict.fromkeys(map(str, named)))
 
 
@@ -259,7 +259,7 @@ def run(
             raise InputError(f"methods = {shown}: must have fem among them, which finds Q from load.displacement")
         chosen = tuple(sorted(chosen, key=lambda name: name != "fem"))
     # cheap methods come first unless they need Q of fem: what they refuse is refused at once
-    order = chosen if scene.load.displacement is not None else sorted(chosen, key=[*METHODS].index)
+    order = chosen if scene.load.displacement is not None else sorted(chosen, key=[*SOLVERS].index)
     what = reduced(scene)
     tasks = {name: (name, what, effects) for name in order}
     if effects.missing:
@@ -273,14 +273,14 @@ def run(
         if method != "fem" and "fem" in results:
             what = _forced(what, results["fem"])
         with told_to(tell := _told_by(name, progress)):
-            results[name] = _slid(what, METHODS[method].solve(what, its, tell, start, means))
+            results[name] = _slid(what, SOLVERS[method](what, its, tell, start, means))
     results = {name: results[name] for name in (*chosen, *results)}
     if "fem" in results and (plates := results["fem"].plates):
         scene = plates.told(scene)
     for result in results.values():
         effects.accept(result.regime)
-    # no bars for finite and unlike bodies or for a fixed element size: there is no reference; none for effects forced
-    # off: the error measures the effect
+    # no bars for finite and dissimilar bodies or for a fixed element size: there is no reference; none for effects
+    # forced off: the error measures the effect
     judged = not scene.finite and scene.material.alike and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     accuracy = min(float(reached or scene.fem.accuracy), LARGEST)
@@ -307,7 +307,7 @@ def _forced(scene: Scene, result: Result) -> Scene:
 def _slid(scene: Scene, result: Result) -> Result:
     """Return ``result`` with q = f p if the contact slides, which no method solves for; otherwise as it is.
 
-    Unlike bodies are left out: there shear changes the pressure.
+    Dissimilar bodies are left out: there shear changes the pressure.
     """
     if result.regime != "sliding" or not scene.material.alike:
         return result

@@ -1,6 +1,6 @@
-"""The methods: what solves a scene, and how figures mark its points. A new method is entered here."""
+"""The methods: what solves a scene. A new one is entered here and, by name, in :mod:`partialslip.tools.methods`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from partialslip.result import Result
@@ -43,15 +43,6 @@ class Solve(Protocol):
     ) -> Result: ...
 
 
-class Method(NamedTuple):
-    """A method: how to ``solve`` by it, the ``marks`` of p and q in figures, and whether others may be compared with it
-    (``refers``)."""
-
-    solve: Solve
-    marks: tuple[str, str] = ("x", "s")
-    refers: bool = True
-
-
 # each is imported when it first solves, as finite elements import slowly
 def _exact(scene: Scene, plan: Plan, progress: Progress, start: State | None, _: Means) -> Result:
     from partialslip.halfplane.method import solve
@@ -77,10 +68,4 @@ def _equivalent(scene: Scene, plan: Plan, progress: Progress, start: State | Non
     return solve(scene, plan, progress, start, rig_of=means.rig_of)
 
 
-METHODS = {  # by preference
-    "exact": Method(_exact),
-    "march": Method(_march),
-    "fem": Method(_fem, ("+", "o")),
-    "equivalent": Method(_equivalent, refers=False),
-}
-REFERENCES = tuple(name for name, method in METHODS.items() if method.refers)
+SOLVERS: Mapping[str, Solve] = {"exact": _exact, "march": _march, "fem": _fem, "equivalent": _equivalent}

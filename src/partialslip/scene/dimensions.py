@@ -20,7 +20,7 @@ DIMENSIONS: dict[str, Dimension] = {
     "profile.crown": "m",
     "profile.x": "m",
     "profile.gap": "m",
-    **{f"profile.measured.{key}": "m" for key in ("unit", "smooth", "noise", "offset", "misfit")},
+    **{f"profile.measured.{key}": "m" for key in ("unit", "smooth", "noise", "offset", "misfit", "centre")},
     "friction.f": "1",
     "friction.x": "m",
     "load.P": "N/m",

@@ -80,7 +80,7 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def driving(self) -> tuple[float, ...]:
-        """What drives the bodies along x at the load points: Q (N/m), or the displacement (m)."""
+        """Q (N/m) or the prescribed displacement (m) at the load points."""
         return self._at_points("Q" if self.displacement is None else "displacement")
 
     @property
@@ -137,7 +137,7 @@ class Load(Table, frozen=True, kw_only=True):
 
     @property
     def _all(self) -> Array:
-        """What drives the bodies, sigma, P, M and sigma_slope at the load points, (points, 5)."""
+        """Q or displacement, sigma, P, M and sigma_slope at the load points, (points, 5)."""
         (sigma, slope), (P, M) = zip(*self.tension, strict=True), zip(*self.pressing(1.0), strict=True)
         return np.array([self.driving, sigma, P, M, slope]).T
 
@@ -145,7 +145,7 @@ class Load(Table, frozen=True, kw_only=True):
     def ends(self) -> tuple[int, int]:
         """Indices of load points 1 and 2, the extremes of the cycle in the order of visits: the extremes of Q, or of
         the displacement, or of sigma where Q is constant, or of P, or of M, or of sigma_slope."""
-        return _ends(self)
+        return _extreme_points(self)
 
     @property
     def progress(self) -> Array:
@@ -216,7 +216,7 @@ class Load(Table, frozen=True, kw_only=True):
 
 
 @functools.lru_cache(maxsize=64)  # a run asks for them hundreds of times
-def _ends(load: Load) -> tuple[int, int]:
+def _extreme_points(load: Load) -> tuple[int, int]:
     values = load._leading
     first, second = sorted((int(np.argmin(values)), int(np.argmax(values))))
     return (first, second) if first != second else (0, len(values) - 1)

@@ -5,16 +5,18 @@ The slope must not decrease. Of all such gaps the nearest one to the points is t
 """
 
 import re
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, NoReturn
 
 import msgspec
 import numpy as np
 
+from partialslip.scene.columns import LENGTH_WORDS, place_of
 from partialslip.scene.table import LARGEST, SMALLEST, Positive, Table
+from partialslip.scene.texttable import TextTable, decoded, read_table
 from partialslip.scene.units import LENGTHS
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
-from partialslip.tools.inputfile import read_text
+from partialslip.tools.inputfile import read_bytes
 
 if TYPE_CHECKING:
     from partialslip.scene import Scene
@@ -23,7 +25,9 @@ if TYPE_CHECKING:
 _LARGEST = 20_000_000  # limit: bytes of a file of points
 _FEWEST = 10  # limit: points
 _COLUMNS = 2  # fixed: x and gap
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
+# fixed: first words of the names of columns
+_ALONG = {"x", "length", "distance", "position", "pos", "lateral", "way"}
+_GAPS = {"gap", "depth", "z", "height", "profile", "h"}
 _BRACKETS = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
 _WORD = re.compile(r"[^\W\d_]+")
 _CELLS = re.compile(r"[,;\t]|\s{2,}")
@@ -36,13 +40,23 @@ _IN_FULL = re.compile(
 )
 _COARSEST, _MOST = 3, 1000  # limit: intervals and points of a table
 _SURE = 5.0  # accuracy: standard deviations of a mean over a smoothing length that are not taken for noise
+_FOLDED = 0.2  # limit: of one side of a trace: largest other side that is taken for a part of an even gap
 _ROUNDING = 1e-12  # accuracy: relative: difference of units, and misfit in the largest gap, that is taken for rounding
 # msgspec 0.20 fails on a union of a number and a tuple of fixed length
 ColumnUnit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=2, max_length=2)]
 
 
-def column_units(file: str, given: float | tuple[float, ...] | None, length: float) -> tuple[float, float]:
-    """Return the units of the columns x and gap of ``file``, in ``length`` (m).
+class PointColumns(NamedTuple):
+    """Columns of a file of points: their numbers from 1, x first, and their units, m; that of heights is negative."""
+
+    numbers: tuple[int, int]
+    unit: tuple[float, float]
+
+
+def columns_of(
+    file: str, given: float | tuple[float, ...] | None, length: float, chosen: tuple[int | str, ...] | None = None
+) -> PointColumns:
+    """Return the columns x and gap of ``file``, and their units in ``length`` (m).
 
     Parameters
     ----------
@@ -50,18 +64,63 @@ def column_units(file: str, given: float | tuple[float, ...] | None, length: flo
     given : float or tuple of float or None
         ``profile.unit``, of both columns or of each, in ``length``.
     length : float
+    chosen : (int or str, int or str), optional
+        ``profile.columns``, names or numbers from 1; by default those of a file of two, or those that are named so.
 
     Raises
     ------
     InputError
-        If ``given`` is not that of the heading, nothing is given and the heading names units that cannot be read, or
-        the heading names x as the second column.
+        If columns are not found, ``given`` is not that of the heading, nothing is given and the heading names units
+        that cannot be read, or the heading names x as the second column.
     """
-    lines = _heading(file)
-    if swapped := next((line for line in lines if _is_swapped(line)), ""):
+    table = _table(file)
+    x, gap = _places(table, file, chosen)
+    lines = table.before
+    if len(table.names) > _COLUMNS:
+        lines = [f"{table.names[x]}; {table.names[gap]}"] if table.head else []
+    elif not chosen and (swapped := next((line for line in lines if _is_swapped(line)), "")):
         raise InputError(f"profile.file: {file}: heading {swapped.strip()!r:.60}: the columns must be x, then gap")
+    units = _units(file, lines, given, length)
+    return PointColumns((x + 1, gap + 1), units)
+
+
+def is_named_gap(file: str, column: int) -> bool:
+    """Whether ``column`` of ``file``, from 1, has a name that says that it is no height."""
+    table = _table(file)
+    return table.head > 0 and "gap" in table.names[column - 1].lower()
+
+
+def _table(file: str) -> TextTable:
+    origin = f"profile.file: {file}"
+    return read_table(decoded(read_bytes(file, _LARGEST), origin)[0], origin, loose=True)
+
+
+def _places(table: TextTable, file: str, chosen: tuple[int | str, ...] | None) -> tuple[int, int]:
+    """Indices of the columns x and gap."""
+    names, shown = table.names, ", ".join(map(repr, table.names))[:100]
+    if chosen:
+        places = [place_of(str(each), names) for each in chosen]
+        for each, place in zip(chosen, places, strict=True):
+            if place is None:
+                raise InputError(f"profile.columns: {each!r}: must be one of {shown}, once, or a number from 1")
+        return tuple(places)  # type: ignore[return-value]
+    filled = [k for k, column in enumerate(table.columns) if any(column)]
+    if len(filled) == _COLUMNS:
+        return filled[0], filled[1]
+    first = [(_WORD.findall(name) or [""])[0].lower() for name in names]
+    x, gap = ([k for k in filled if first[k] in words] for words in (_ALONG, _GAPS))
+    if not (table.head and len(x) == len(gap) == 1):
+        raise InputError(
+            f"profile.file: {file}: {len(names)} columns, {shown}: must have two, x and gap; or name both by "
+            "profile.columns, for example [2, 3]"
+        )
+    return x[0], gap[0]
+
+
+def _units(file: str, lines: list[str], given: float | tuple[float, ...] | None, length: float) -> tuple[float, float]:
+    """Units of x and gap in ``length``: those ``given`` or those in the ``lines`` of a heading."""
     words = next(filter(None, map(_stated, reversed(lines))), [])
-    known = [LENGTHS.get(word.strip().lower()) for word in words]
+    known = [LENGTH_WORDS.get(word.strip().lower()) for word in words]
     shown = " and ".join(f"[{word}]" for word in words)
     stated = None if None in known else [factor / length for factor in known if factor]
     if given is None:
@@ -82,16 +141,6 @@ def column_units(file: str, given: float | tuple[float, ...] | None, length: flo
     return x, gap
 
 
-def _heading(file: str) -> list[str]:
-    """Lines before the first number."""
-    found: list[str] = []
-    for line in read_text(file, _LARGEST).splitlines():
-        if _NUMBER.fullmatch(_words(line)[0]):
-            break
-        found.append(line)
-    return found
-
-
 def _stated(line: str) -> list[str]:
     """Words for the units of both columns in a ``line`` of the heading, or one that stands for both; empty if there are
     none.
@@ -99,27 +148,27 @@ def _stated(line: str) -> list[str]:
     They are in brackets, in round ones only if they are units, or the last words of the columns' names.
     """
     words = ["".join(pair) for pair in _BRACKETS.findall(line)]
-    known = all(word.strip().lower() in LENGTHS for word in words)
+    known = all(word.strip().lower() in LENGTH_WORDS for word in words)
     if len(words) == _COLUMNS and (known or all(square for square, _ in _BRACKETS.findall(line))):
         return words
-    cells = _cells(line)
+    cells = _column_words(line)
     last = [names[-1] for names in cells]
     if len(cells) == 1:
-        last = [word for word in cells[0] if word.lower() in LENGTHS.keys() - _ENGLISH]
-    if len(last) == _COLUMNS and all(word.lower() in LENGTHS for word in last):
+        last = [word for word in cells[0] if word.lower() in LENGTH_WORDS.keys() - _ENGLISH]
+    if len(last) == _COLUMNS and all(word.lower() in LENGTH_WORDS for word in last):
         return last
     alone = len(words) == 1 and len(cells) == 1 and known and not _unread(line.replace(words[0], "", 1))
     return words if alone else []
 
 
-def _cells(line: str) -> list[list[str]]:
+def _column_words(line: str) -> list[list[str]]:
     """Words of each column in a ``line`` of the heading."""
     return [words for cell in _CELLS.split(line) if (words := _WORD.findall(cell))]
 
 
 def _is_swapped(line: str) -> bool:
     """Whether a ``line`` of the heading names x as the second of two columns."""
-    first = [words[0].lower() for words in _cells(line)]
+    first = [words[0].lower() for words in _column_words(line)]
     return len(first) == _COLUMNS and first[1] == "x" != first[0]
 
 
@@ -129,60 +178,60 @@ def _unread(line: str) -> str:
     return next((each for each in words if each.lower() in LENGTHS.keys() - _ENGLISH or _IN_FULL.fullmatch(each)), "")
 
 
-def _words(line: str) -> list[str]:
-    return re.split(r"[\s,;]+", line.strip().strip(",;"))
-
-
-def read_points(file: str, unit: tuple[float, float]) -> tuple[Array, Array]:
-    """Read x and gap, (n,) each, times their ``unit``, sorted by x.
-
-    The columns are separated by spaces, tabs, commas or semicolons; lines before the first number, and lines that begin
-    with #, are headings.
+def read_points(
+    file: str, unit: tuple[float, float], columns: tuple[int, int] = (1, 2), centre: float = 0.0
+) -> tuple[Array, Array]:
+    """Read x and gap, (n,) each, times their ``unit``, sorted by x, from ``columns`` (from 1) of a table; x from
+    ``centre`` (m) on. Rows without values are left out.
 
     Raises
     ------
     InputError
-        If the file is no table of two columns with at least ten different x, or a number is neither zero nor of a size
-        that a scene allows.
+        If the file is no table with these columns and at least ten different x, or a number is neither zero nor of a
+        size that a scene allows.
     """
-    rows: list[tuple[float, float]] = []
-    for number, line in enumerate(read_text(file, _LARGEST).splitlines(), start=1):
-        words = _words(line)
-        if line.lstrip().startswith("#") or not line.strip() or (not rows and not _NUMBER.fullmatch(words[0])):
-            continue
-        if len(words) != _COLUMNS or not all(map(_NUMBER.fullmatch, words)):
-            raise InputError(f"profile.file: {file}: line {number}: must have two numbers, x and gap")
-        place, height = (float(re.sub("[dD]", "e", word)) * each for word, each in zip(words, unit, strict=True))
-        for word, value in zip(words, (place, height), strict=True):
-            if value and not SMALLEST <= abs(value) <= LARGEST:
-                sizes = f"zero or of a size from {SMALLEST} to {LARGEST}"
-                raise InputError(f"profile.file: {file}: line {number}: {word}: must be {sizes}")
-        rows.append((place, height))
-    x, gap = np.array(sorted(rows)).reshape(-1, 2).T
+    table = _table(file)
+    if max(columns) > len(table.names):
+        raise InputError(f"profile.file: {file}: {len(table.names)} columns: must have a column {max(columns)}")
+    numbers = [table.numbers(k - 1, f"profile.file: {file}") for k in columns]
+    for k, column, each in zip(columns, numbers, unit, strict=True):
+        size = np.abs(column * each)
+        if (wrong := (size > 0) & ((size < SMALLEST) | (size > LARGEST))).any():
+            row, sizes = int(wrong.argmax()), f"zero or of a size from {SMALLEST} to {LARGEST}"
+            field = table.columns[k - 1][row]
+            raise InputError(f"profile.file: {file}: line {table.lines[row]}: {field}: must be {sizes}")
+    known = np.isfinite(numbers[0]) & np.isfinite(numbers[1])
+    x, gap = (column[known] * each for column, each in zip(numbers, unit, strict=True))
+    order = np.lexsort((gap, x))
     if len(np.unique(x)) < _FEWEST:
         raise InputError(f"profile.file: {file}: must have at least {_FEWEST} different x, not {len(np.unique(x))}")
-    return x, gap
+    return x[order] - centre, gap[order]
 
 
 class ProfileFile(Table, frozen=True, kw_only=True):
     """Keys of a profile from a file.
 
-    ``file`` has the columns x and gap, of one half of an even gap if x begins at 0; ``unit`` (m) is that of its
-    numbers, or of each column (default: the units in the heading of the file, such as ``x [mm], gap [um]``, else the
-    scene's unit of length); ``smooth`` (m) is the smoothing length, and ``noise`` (m) the standard deviation of the
-    gaps (default: estimated).
+    ``file`` has the columns x and gap, or heights, of one half of an even gap if x begins at 0; ``columns`` names them
+    or numbers them from 1 where there are more. ``unit`` (m) is that of its numbers, or of each column (default: the
+    units in the heading of the file, such as ``x [mm], gap [um]``, else the scene's unit of length); ``smooth`` (m) is
+    the smoothing length, and ``noise`` (m) the standard deviation of the gaps (default: estimated). With ``centre`` =
+    "auto", x of a trace that begins at 0 is from its lowest point on, wherever that is; less than a fifth beside it is
+    of an even gap, too.
     """
 
     file: Annotated[str, msgspec.Meta(min_length=1)]
     smooth: Positive
     unit: ColumnUnit | None = None
     noise: Positive | None = None
+    columns: Annotated[tuple[int | str, ...], msgspec.Meta(min_length=2, max_length=2)] | None = None
+    centre: Literal["auto", "given"] = "auto"
 
 
 class Measured(Table, frozen=True, kw_only=True):
-    """How a table was made from a file: number of ``points``, ``unit`` of the columns x and gap (m), smoothing length
-    ``smooth`` (m), standard deviation ``noise`` of the gaps (m), ``offset`` of the gaps (m), which has no effect, and
-    ``misfit``, the root mean square difference between points and table (m)."""
+    """How a table was made from a file: number of ``points``, ``unit`` of the columns x and gap (m; below zero for
+    heights), smoothing length ``smooth`` (m), standard deviation ``noise`` of the gaps (m), ``offset`` of the gaps (m),
+    which has no effect, ``misfit``, the root mean square difference between points and table (m), numbers of the
+    ``columns``, from 1, and the place in the file that is x = 0, ``centre`` (m)."""
 
     file: str
     points: int
@@ -191,6 +240,18 @@ class Measured(Table, frozen=True, kw_only=True):
     noise: float
     offset: float
     misfit: float
+    columns: tuple[int, int] = (1, 2)
+    centre: float = 0.0
+
+    def read(self) -> tuple[Array, Array]:
+        """Return x and gap of the points (n,) each, m; on one side where they are of an even gap.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read.
+        """
+        return _folded(*read_points(self.file, self.unit, self.columns, self.centre))
 
 
 class _Fit(NamedTuple):
@@ -216,8 +277,13 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
         If the file is no table of two columns, its heading has other units than ``keys`` or names units that cannot be
         read, no convex gap follows the points within the noise, or x begins at 0 away from the lowest point.
     """
-    unit = column_units(keys.file, keys.unit, length)
-    x, gap = read_points(keys.file, unit)
+    columns, unit = columns_of(keys.file, keys.unit, length, keys.columns)
+    x, gap = read_points(keys.file, unit, columns)
+    if np.polyfit((x - x.mean()) / np.ptp(x), gap, 2)[0] < 0 and not is_named_gap(keys.file, columns[1]):
+        unit = (unit[0], -unit[1])  # heights
+        x, gap = read_points(keys.file, unit, columns)
+    centre = _lowest(x, gap, keys.smooth) if keys.centre == "auto" and x[0] == 0 else 0.0
+    x, gap = _folded(*read_points(keys.file, unit, columns, centre))
     # the slope at x = 0 is free: the points tell whether it is that of an even gap
     free, turning = (_fitted(x, gap, keys.smooth, convex, even=False) for convex in (False, True))
     fit = _fitted(x, gap, keys.smooth, True) if x[0] == 0 else turning
@@ -225,7 +291,7 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
     scatter = float(np.sqrt(np.sum((gap - free.at) ** 2) / spare))
     noise = keys.noise or scatter
     sure = max(noise, _ROUNDING * float(np.ptp(gap)))
-    _check(x, gap - turning.at, keys, sure)
+    _require_convex_within_noise(x, gap - turning.at, keys, sure)
     more = float(np.sum((gap - fit.at) ** 2) - np.sum((gap - turning.at) ** 2))
     if more > (_SURE * sure) ** 2:
         _refuse_mirror(turning, keys)
@@ -240,6 +306,8 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
             "noise": noise,
             "offset": float(fit.at.min()),
             "misfit": float(np.sqrt(np.mean((gap - fit.at) ** 2))),
+            "columns": list(columns),
+            "centre": centre,
         },
     }
 
@@ -272,12 +340,14 @@ def refitted(scene: "AnyScene", count: int, seed: int = 0, smooth: float | None 
     known: Measured | None = getattr(scene.profile, "measured", None)
     if known is None:
         raise InputError("profile: must be from a file (profile.file) to refit noisy copies")
-    x, _ = read_points(known.file, known.unit)
-    true, random = scene.profile.gap_at(x), np.random.default_rng(seed)
+    x, _ = read_points(known.file, known.unit, known.columns)
+    true, random = scene.profile.gap_at(x - known.centre), np.random.default_rng(seed)
+    smooth, mirrored = smooth or known.smooth, scene.profile.even and known.centre > 0
     found = []
     for _ in range(count):
         noisy = true + known.noise * random.standard_normal(len(x))
-        fit = _fitted(x, noisy, smooth or known.smooth, True)
+        centre = _mirror(x, noisy, smooth, known.centre) if mirrored else known.centre
+        fit = _fitted(*_folded(x - centre, noisy), smooth, True)
         found.append(scene.replace(profile={"x": fit.x, "gap": fit.gap - fit.gap.min()}))
     return found
 
@@ -291,13 +361,60 @@ def smoothest(known: Measured) -> float:
     InputError
         If the file cannot be read.
     """
-    x, gap = read_points(known.file, known.unit)
+    x, gap = known.read()
     noise, smooth = max(known.noise, _ROUNDING * float(np.ptp(gap))), known.smooth
     while round((x[-1] - x[0]) / (2 * smooth)) >= _COARSEST:
-        if _off(x, gap - _fitted(x, gap, 2 * smooth, True).at, 2 * smooth)[1] > _SURE * noise:
+        if _largest_mean_residual(x, gap - _fitted(x, gap, 2 * smooth, True).at, 2 * smooth)[1] > _SURE * noise:
             break
         smooth *= 2
     return smooth
+
+
+def _folded(x: Array, gap: Array) -> tuple[Array, Array]:
+    """Points of one side of an even gap, of which less than a fifth are beside x = 0 on the other side; other points as
+    they are."""
+    if not -_FOLDED * x[-1] < x[0] < 0:
+        return x, gap
+    order = np.argsort(np.abs(x), kind="stable")
+    folded = np.abs(x)[order]
+    folded[0] = 0.0  # where the even gap begins
+    return folded, gap[order]
+
+
+def _lowest(x: Array, gap: Array, smooth: float) -> float:
+    """Place of the lowest point of a trace that begins at 0, m; 0 if it is there, or beside the trace.
+
+    The points tell whether one slope more, at x = 0, follows them better than an even gap.
+    """
+    free, even = (_fitted(x, gap, smooth, True, each) for each in (False, True))
+    spare = max(len(x) - len(free.x) - 1, 1)
+    scatter = max(float(np.sqrt(np.sum((gap - free.at) ** 2) / spare)), _ROUNDING * float(np.ptp(gap)))
+    more = float(np.sum((gap - even.at) ** 2) - np.sum((gap - free.at) ** 2))
+    lowest = _turning(free)
+    if more <= (_SURE * scatter) ** 2 or not x[0] < lowest < x[-1]:
+        return 0.0
+    return _mirror(x, gap, smooth, lowest) if lowest < _FOLDED * (x[-1] - lowest) else lowest
+
+
+def _mirror(x: Array, gap: Array, smooth: float, lowest: float) -> float:
+    """Place near ``lowest`` at which points of both sides follow one even gap best, m."""
+
+    def misfit(centre: float) -> float:
+        folded, of = _folded(x - centre, gap)
+        return float(np.sum((of - _fitted(folded, of, smooth, True, True).at) ** 2))
+
+    from scipy.optimize import minimize_scalar  # imports slowly
+
+    bounds = (max(lowest - smooth, x[1]), min(lowest + smooth, _FOLDED * x[-1] / (1 + _FOLDED)))
+    return float(minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": 1e-5 * smooth}).x)
+
+
+def _turning(fit: _Fit) -> float:
+    """Place of the lowest point of a ``fit``, m: where its slope, linear between middles of intervals, is zero."""
+    step, slopes = fit.x[1] - fit.x[0], np.diff(fit.gap) / np.diff(fit.x)
+    bent = slopes[1:] - slopes[:-1]
+    at = int(np.clip(np.searchsorted(slopes, 0.0), 1, len(bent)))
+    return float(fit.x[at] + step / 2 - slopes[at] * step / bent[at - 1] if bent[at - 1] > 0 else fit.x[at])
 
 
 def _fitted(x: Array, gap: Array, smooth: float, convex: bool, even: bool | None = None) -> _Fit:
@@ -342,10 +459,7 @@ def _integrated(at: Array, knots: Array, times: int) -> Array:
 
 def _refuse_mirror(fit: _Fit, keys: ProfileFile) -> NoReturn:
     """Raise InputError: the ``fit``, whose slope at x = 0 is free, follows the points better than an even one."""
-    step, slopes = fit.x[1] - fit.x[0], np.diff(fit.gap) / np.diff(fit.x)
-    bent = slopes[1:] - slopes[:-1]
-    at = int(np.clip(np.searchsorted(slopes, 0.0), 1, len(bent)))
-    lowest = fit.x[at] + step / 2 - slopes[at] * step / bent[at - 1] if bent[at - 1] > 0 else fit.x[at]
+    lowest = _turning(fit)
     raise InputError(
         f"profile.file: {keys.file}: x begins at 0, and the lowest point is at about {lowest:.3g} m: must be at 0 for "
         "one half of an even gap; begin the file there, or let x begin below 0 for a gap of both sides, or, if it is "
@@ -353,9 +467,9 @@ def _refuse_mirror(fit: _Fit, keys: ProfileFile) -> NoReturn:
     )
 
 
-def _check(x: Array, residuals: Array, keys: ProfileFile, noise: float) -> None:
+def _require_convex_within_noise(x: Array, residuals: Array, keys: ProfileFile, noise: float) -> None:
     """Raise InputError where the mean residual over a smoothing length is larger than noise can make it."""
-    mean, deviation, at = _off(x, residuals, keys.smooth)
+    mean, deviation, at = _largest_mean_residual(x, residuals, keys.smooth)
     if deviation > _SURE * noise:
         raise InputError(
             f"profile.file: {keys.file}: at x = {at:.6g} m the points are off any convex gap by "
@@ -364,9 +478,9 @@ def _check(x: Array, residuals: Array, keys: ProfileFile, noise: float) -> None:
         )
 
 
-def _off(x: Array, residuals: Array, smooth: float) -> tuple[float, float, float]:
-    """Mean residual over the smoothing length where it says most, the noise of which it is a standard deviation, and
-    the place x."""
+def _largest_mean_residual(x: Array, residuals: Array, smooth: float) -> tuple[float, float, float]:
+    r"""Mean residual r of n points, r sqrt(n), and x, of the window of one smoothing length with the largest \|r\|
+    sqrt(n): under noise s, r has the standard deviation s/sqrt(n)."""
     window = np.floor((x - x[0]) / smooth).astype(int)
     count = np.bincount(window)
     sums, places = np.bincount(window, residuals), np.bincount(window, x)

@@ -144,7 +144,7 @@ def _other_kind(head: str, change: Mapping[str, Any], table: Mapping[str, Any]) 
 def make_table(kind: type[_Made], data: Mapping[str, Any]) -> _Made:
     """Make a table of type ``kind``, a scene or one of its tables, from ``data``; see :func:`parse_scene`."""
     place = _place(kind)
-    data = _plain(data, place)
+    data = _as_builtins(data, place)
     if kind is not Scene:
         return _made(kind, place, data, data, SI)
     units = _units(data)
@@ -285,7 +285,7 @@ def _find_files(data: dict[str, Any], scene: str | os.PathLike[str]) -> None:
         bodies["equivalent"] = str(Path(scene).parent / rig)
 
 
-def _plain(value: Any, path: str = "", depth: int = 0) -> Any:
+def _as_builtins(value: Any, path: str = "", depth: int = 0) -> Any:
     """``value`` as dicts, lists, strings and Python numbers; InputError if nested too deep or too long."""
     if hasattr(value, "tolist"):  # of NumPy and pandas
         value = value.tolist()
@@ -300,11 +300,11 @@ def _plain(value: Any, path: str = "", depth: int = 0) -> Any:
     if isinstance(value, Mapping):
         if wrong := [key for key in value if not isinstance(key, str)]:
             raise InputError(f"{_join(path, wrong[0])}: a key must be a string")
-        return {key: _plain(child, _join(path, key), depth + 1) for key, child in value.items()}
+        return {key: _as_builtins(child, _join(path, key), depth + 1) for key, child in value.items()}
     if isinstance(value, (list, tuple)):
         if len(value) > _LONGEST:
             raise InputError(f"{path}: must be an array of at most {_LONGEST} numbers, not {len(value)}")
-        return [_plain(child, f"{path}[{index}]", depth + 1) for index, child in enumerate(value)]
+        return [_as_builtins(child, f"{path}[{index}]", depth + 1) for index, child in enumerate(value)]
     return value
 
 
@@ -325,9 +325,9 @@ def _explain(message: str, data: Any, kind: Any, place: str) -> str:
     path = where.rstrip("`").lstrip(".")
     value: Any = data
     for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
-        kind = kind if index else _fields(_table(kind, value)).get(key)
+        kind = kind if index else _fields(_table_type(kind, value)).get(key)
         value = value[int(index)] if index else value[key]
-    kind, path = _table(kind, value), ".".join(filter(None, (place, path)))
+    kind, path = _table_type(kind, value), ".".join(filter(None, (place, path)))
     if unknown := re.fullmatch(r"(?s)Object contains unknown field `(.*)`", what):
         keys = [*_keys(kind), *(["units"] if kind is Scene else [])]
         return f"{_join(path, unknown[1])}: unknown key{_nearest(unknown[1], keys)}"
@@ -336,7 +336,7 @@ def _explain(message: str, data: Any, kind: Any, place: str) -> str:
     return f"{path} = {_shown(repr(value) if isinstance(value, str) else value)}: must be {_allowed(what, kind)}"
 
 
-def _table(kind: Any, value: Any) -> Any:
+def _table_type(kind: Any, value: Any) -> Any:
     """Type of the table, chosen by the key ``kind`` if there are several."""
     tables = [table for table in get_args(kind) if isinstance(table, type) and issubclass(table, Table)]
     tag = value.get("kind") if isinstance(value, Mapping) else None

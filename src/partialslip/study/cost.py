@@ -196,10 +196,10 @@ def measure_costs(
         if process := found[-1].process:
             rest -= process.cpu_s + process.report_cpu_s + process.again_cpu_s
     progress(len(cases), len(cases), "", rest)
-    return MeasuredCosts([_point(entry, entry.run) for entry in found if entry.run], cases[len(found) :])
+    return MeasuredCosts([_cost_point(entry, entry.run) for entry in found if entry.run], cases[len(found) :])
 
 
-def _point(entry: Solved, run: Record) -> CostPoint:
+def _cost_point(entry: Solved, run: Record) -> CostPoint:
     comparison = next(iter(run.comparison.values()), None)
     cost, process = _method(run).cost, entry.process
     return CostPoint(
@@ -261,7 +261,7 @@ def read_peers(path: Path, scene: str) -> list[CostPoint]:
             peer = decoded(line, _Peer, told)
             found.append(
                 CostPoint(
-                    series=f"{peer.method}, {_short(peer.setting)}",
+                    series=f"{peer.method}, {_short_setting(peer.setting)}",
                     setting=f"h = {peer.element_size:g} a",
                     errors={key: off for key in ERRORS if (off := peer.errors.get(key)) is not None},
                     cpu_s=peer.cpu_s,
@@ -276,7 +276,7 @@ def read_peers(path: Path, scene: str) -> list[CostPoint]:
     return found
 
 
-def _short(setting: str) -> str:
+def _short_setting(setting: str) -> str:
     return setting.split(", growth")[0].replace(" to the ends", "").replace("surface-to-surface ", "")
 
 

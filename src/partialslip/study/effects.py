@@ -134,7 +134,9 @@ def study_effects(scene: Scene, progress: Callable[[str], None] = lambda _: None
     """
     scene = replace(scene, fem=replace(scene.fem, size=scene.fem.size or SIZE))
     own = plan(scene)
-    _solve(replace(scene, fem=replace(scene.fem, size=0.5)))  # warm-up: imports, and other costs of a first run
+    _reduced_result(
+        replace(scene, fem=replace(scene.fem, size=0.5))
+    )  # warm-up: imports, and other costs of a first run
     progress("as planned")
     result = _measured(scene)
     entries = []
@@ -163,10 +165,10 @@ def _entry(scene: Scene, own: Plan, result: Result, effect: Effect) -> SwitchedE
 
 def _measured(scene: Scene) -> Result:
     """Solve a few times and return the result with the least CPU time."""
-    return min((_solve(scene) for _ in range(_REPEATS)), key=lambda result: result.cost.cpu_s)
+    return min((_reduced_result(scene) for _ in range(_REPEATS)), key=lambda result: result.cost.cpu_s)
 
 
-def _solve(scene: Scene) -> Result:
+def _reduced_result(scene: Scene) -> Result:
     from partialslip_fem import solve
 
     planned = plan(scene)
@@ -181,11 +183,11 @@ def _changes(on: Result, off: Result, f: float) -> dict[str, float | None]:
         here, there = getattr(on, key), getattr(off, key)
         changes[key] = None if here is None or there is None else abs(there - here) / on.a
     _, changes["q"] = cell_errors(off.traction, on.traction, f)
-    changes["q2"] = _apart(on, off)
+    changes["q2"] = _traction_change(on, off)
     return changes
 
 
-def _apart(on: Result, off: Result) -> float | None:
+def _traction_change(on: Result, off: Result) -> float | None:
     """Return the relative L2 difference of q at load point 2."""
     if on.traction.q2 is None or off.traction.q2 is None:
         return None

@@ -7,7 +7,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 
 _MOVED = {
-    "run": "judge methods",
+    "run": "judge",
     "report": "record",
     "codes": "score export",
     "study": "batch map live fatigue",
@@ -17,7 +17,7 @@ _MOVED = {
     "scene": "plan gradual units",
     "tools": (
         "allowance bars arrays errors groups threads telling frame shown strictjson inputfile seal origin "
-        "convergence output"
+        "convergence output methods"
     ),
 }
 NEW_NAMES = {name: f"{folder}.{name}" for folder, names in _MOVED.items() for name in names.split()}

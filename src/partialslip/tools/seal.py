@@ -27,7 +27,7 @@ def sealed_text(data: object) -> str:
     """Return ``data``, of a type known to msgspec, as indented JSON text with its checksum as the last key."""
     text = json_text(data)
     body = text.rstrip().removesuffix("}").rstrip()
-    return f'{body},\n "{KEY}": "{_sum(text)}"\n}}\n'
+    return f'{body},\n "{KEY}": "{_checksum(text)}"\n}}\n'
 
 
 def read_sealed(
@@ -67,10 +67,10 @@ def edited(text: bytes | str, tree: dict[str, Any]) -> bool | None:
     The seal is removed from ``tree``, the content of the text as plain data.
     """
     found = tree.pop(KEY, None)
-    return None if found is None else found != _sum(text)
+    return None if found is None else found != _checksum(text)
 
 
-def _sum(text: bytes | str) -> str:
+def _checksum(text: bytes | str) -> str:
     """Return the checksum of a JSON object without its seal; whole numbers count as the floats that they equal."""
     data = json.loads(text, parse_int=float)
     data.pop(KEY, None)

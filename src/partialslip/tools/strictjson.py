@@ -56,7 +56,7 @@ def parsed(text: bytes | str, told: str) -> Any:
     try:
         words = text if isinstance(text, str) else text.decode("utf-8-sig")
         tree = json.loads(
-            words, object_pairs_hook=_object, parse_float=_number, parse_int=_whole, parse_constant=_constant
+            words, object_pairs_hook=_object, parse_float=_finite_float, parse_int=_whole, parse_constant=_constant
         )
         if _SURROGATE.search(words):
             json.dumps(tree, ensure_ascii=False).encode("utf-8")
@@ -87,15 +87,15 @@ def _said(message: str) -> str:
     what, _, where = message.partition(" - at `$")
     path = where.rstrip("`").removeprefix(".")
     if field := re.fullmatch(r"(?s)Object (missing required|contains unknown) field `(.*)`", what):
-        key = f"{path}.{_short(field[2])}" if path else _short(field[2])
+        key = f"{path}.{_shortened(field[2])}" if path else _shortened(field[2])
         return f"{key}: {'missing' if field[1].startswith('missing') else 'unknown key'}"
-    place = f"{_short(path)}: " if path else ""
+    place = f"{_shortened(path)}: " if path else ""
     return f"{place}must be {wanted(what) or what.replace('`', '').removeprefix('Expected ')}"
 
 
 def wanted(what: str, kinds: Mapping[str, str] = JSON_KINDS) -> str | None:
-    """Return the type or the bound that a value must have, in plain words, from ``what`` msgspec says; ``kinds`` are
-    the words of types. None if it says something else."""
+    """Type or bound that a value must have, in plain words, from msgspec's message ``what``; ``kinds`` are the words of
+    its types. None for any other message."""
     if wrong := re.fullmatch(r"Expected `([a-z]+(?: \| [a-z]+)*)`, got `(?:datetime\.)?([a-z]+)`", what):
         types = [kinds.get(kind, kind) for kind in wrong[1].split(" | ") if kind != "null"]
         return f"{' or '.join(types)}, not {kinds.get(wrong[2], wrong[2])}"
@@ -108,20 +108,20 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         keys = [key for key, _ in pairs]
         twice = next(key for place, key in enumerate(keys) if key in keys[:place])
-        raise InputError(f"{_short(twice)}: a key that stands twice in an object: must stand once")
+        raise InputError(f"{_shortened(twice)}: a key that stands twice in an object: must stand once")
     return found
 
 
-def _number(text: str) -> float:
+def _finite_float(text: str) -> float:
     value = float(text)
     if math.isinf(value) or (value == 0 and re.search("[1-9]", re.split("[eE]", text)[0])):
-        raise InputError(f"{_short(text)}: a number out of the range of double precision")
+        raise InputError(f"{_shortened(text)}: a number out of the range of double precision")
     return value
 
 
 def _whole(text: str) -> int:
     if len(text.lstrip("-")) > _DIGITS:
-        raise InputError(f"{_short(text)}: a whole number of more than {_DIGITS} digits")
+        raise InputError(f"{_shortened(text)}: a whole number of more than {_DIGITS} digits")
     return int(text)
 
 
@@ -129,5 +129,5 @@ def _constant(text: str) -> NoReturn:
     raise InputError(f"{text}: must be a number, or null without a value")
 
 
-def _short(text: str) -> str:
+def _shortened(text: str) -> str:
     return text if len(text) <= 40 else text[:37] + "..."

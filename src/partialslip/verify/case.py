@@ -145,7 +145,7 @@ def run_case(case: Case) -> list[CaseVerdict]:
 def solve_case(case: Case) -> Found:
     """Return result or failure of each method of ``case``; the reference comes first."""
     needed = [case.reference] if case.reference else []
-    return {method: _solve(case, method) for method in dict.fromkeys([*needed, *case.methods])}
+    return {method: _result_or_failure(case, method) for method in dict.fromkeys([*needed, *case.methods])}
 
 
 def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
@@ -186,7 +186,7 @@ def judge_case(case: Case, found: Found) -> list[CaseVerdict]:
 
 
 def conclusions(verdicts: Iterable[CaseVerdict]) -> dict[tuple[str, str], Conclusion]:
-    """Return what the ``verdicts`` amount to, by case and method (:func:`partialslip.run.judge.conclude`)."""
+    """Return the outcome of the ``verdicts`` by case and method (:func:`partialslip.run.judge.conclude`)."""
     groups = grouped(((verdict.case, verdict.method), verdict) for verdict in verdicts)
     return {
         group: conclude(
@@ -210,7 +210,7 @@ def whole(verdicts: Iterable[CaseVerdict]) -> Conclusion:
     return replace(found, outcome=Outcome.PASSED, asked=True) if certified else found
 
 
-def _solve(case: Case, method: str) -> Result | Failure:
+def _result_or_failure(case: Case, method: str) -> Result | Failure:
     """Return the result of a method, or the failure."""
     start = time.process_time()
     try:

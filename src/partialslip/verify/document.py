@@ -118,7 +118,7 @@ def document(account: Account) -> str:
         ladders=_ladders(account.entries),
         climbed={case: list(map(_converged, entry.ladder)) for case, entry in account.entries.items()},
         kinds=_kinds(account) if stress else [],
-        spread=_spread(listed) if stress else None,
+        spread=_certificate_histogram(listed) if stress else None,
     )
 
 
@@ -192,7 +192,7 @@ def _converged(found: Convergence) -> tuple[str, ...]:
     """Return a row of requirement, quantity, changes, observed order, GCI, true error and its share of the GCI."""
     share = "" if found.error is None or not found.gci else f"{100 * found.error / found.gci:.0f} %"
     order = "" if found.order is None else f"{found.order:.2f}"
-    numbers = *map(_number, found.changes), order, _number(found.gci), _number(found.error), share
+    numbers = *map(_error_text, found.changes), order, _error_text(found.gci), _error_text(found.error), share
     return number_of(found.quantity), found.quantity, *numbers
 
 
@@ -205,14 +205,14 @@ def _ladders(entries: Mapping[str, Entry]) -> list[tuple[str, ...]]:
         spread = [f"{value:.2f}" for value in (min(orders), np.median(orders), max(orders))] if orders else ["", "", ""]
         known = [each for each in some if each.error is not None]
         within = sum((each.error or 0.0) <= each.gci for each in known)
-        largest = _number(max(each.gci for each in some))
+        largest = _error_text(max(each.gci for each in some))
         table.append((number_of(quantity), quantity, f"{len(some):,}", *spread, largest, f"{within} of {len(known)}"))
     return table
 
 
 def _close(verdict: CaseVerdict) -> tuple[str, ...]:
     """Return a row of case, requirement, check, error, bar, share of the bar, CPU seconds and verdict."""
-    numbers = _number(verdict.error), _number(verdict.bar), _share(verdict), f"{verdict.cpu_s:.2f}"
+    numbers = _error_text(verdict.error), _error_text(verdict.bar), _share(verdict), f"{verdict.cpu_s:.2f}"
     return (
         verdict.case,
         number_of(verdict.quantity),
@@ -225,7 +225,7 @@ def _close(verdict: CaseVerdict) -> tuple[str, ...]:
 def _found(verdict: CaseVerdict) -> tuple[str, ...]:
     """Return a row of requirement, check, unit, exact value, value, error or residual, bar, share and verdict."""
     unit, *pair = rows.verdict_numbers(verdict)[:3]
-    numbers = _number(verdict.error), _number(verdict.bar), _share(verdict)
+    numbers = _error_text(verdict.error), _error_text(verdict.bar), _share(verdict)
     check = f"{verdict.method}.{verdict.quantity}"
     return number_of(verdict.quantity), check, unit, *pair, *numbers, rows.word(verdict)
 
@@ -236,7 +236,7 @@ def _reasons(verdicts: Sequence[CaseVerdict]) -> list[str]:
     return [f"{', '.join(checks)}: {reason}." for reason, checks in reasons.items()]
 
 
-def _number(value: float | None) -> str:
+def _error_text(value: float | None) -> str:
     return "" if value is None else f"{value:.1e}" if value else "0"
 
 
@@ -259,7 +259,7 @@ def _kinds(account: Account) -> list[tuple[str, ...]]:
     return table
 
 
-def _spread(verdicts: Sequence[CaseVerdict]) -> str | None:
+def _certificate_histogram(verdicts: Sequence[CaseVerdict]) -> str | None:
     """Return a histogram of the certificates as SVG; None without certificates."""
     some = _certificates(verdicts)
     if not some:

@@ -17,13 +17,13 @@ from partialslip.report.sketch import sketch_svg
 from partialslip.result import Result
 from partialslip.run import compared
 from partialslip.run.judge import Conclusion, Outcome
-from partialslip.run.methods import REFERENCES
 from partialslip.scene.plan import plan
 from partialslip.scene.reading import scene_toml
 from partialslip.study.batch.ledger import Ledger, case_key, scene_content
 from partialslip.study.batch.sweep import SweepProgress, Task, work_through, workers
 from partialslip.tools.errors import InputError
 from partialslip.tools.inputfile import read_text
+from partialslip.tools.methods import REFERENCES
 from partialslip.tools.output.files import write_texts
 from partialslip.tools.output.page import check_pdf
 from partialslip.tools.output.place import Request, placed

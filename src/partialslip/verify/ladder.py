@@ -64,7 +64,7 @@ def climb(scene: Scene, exact: Result) -> tuple[Convergence, ...]:
 
     ``exact`` is the exact result. Quantities that do not exist or are undetermined are left out.
     """
-    results = [_solve(scene, size) for size in SIZES]
+    results = [_fem_result(scene, size) for size in SIZES]
     changes = [compare(coarse, fine, scene, None).errors for coarse, fine in itertools.pairwise(results)]
     last = compare(results[-1], exact, scene, None).errors
     found = []
@@ -89,5 +89,5 @@ def convergence(quantity: str, changes: Sequence[float], error: float | None) ->
     return Convergence(quantity, tuple(steps.tolist()), order, grid_convergence_index(change, 2, order, _FORMAL), error)
 
 
-def _solve(scene: Scene, size: float) -> Result:
+def _fem_result(scene: Scene, size: float) -> Result:
     return run(scene.replace(fem={"order": 1, "size": size}), ["fem"]).results["fem"]

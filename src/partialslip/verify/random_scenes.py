@@ -204,7 +204,8 @@ def _stream(seed: int, number: int) -> np.random.Generator:
 
 
 def _forces(random: np.random.Generator, count: int) -> Array:
-    """P at the load points, in the largest one: from nearly constant to nearly zero at the others."""
+    """P over its largest value at the ``count`` load points: 1 at one, P_min/P_max (1e-4 to 1 - 1e-9) at another,
+    uniform in between at the others."""
     falls = 10 ** -random.uniform(0, 4) if random.random() < 0.3 else 1 - 0.7 * random.random() ** 2
     if random.random() < 0.2:
         falls = 1 - 10 ** -random.uniform(1, 9)

@@ -8,9 +8,9 @@ from typing import Literal, get_args
 
 from partialslip.run.judge import Bar
 from partialslip.run.judge.reference import reference
-from partialslip.run.methods import REFERENCES
 from partialslip.scene.reading import meant
 from partialslip.tools.errors import InputError
+from partialslip.tools.methods import REFERENCES
 from partialslip.verify.case import Case
 from partialslip.verify.hard_cases.catalogue import hard_cases, shipped
 from partialslip.verify.random_scenes import draw, draw_varying, kind_of, varies
@@ -18,7 +18,7 @@ from partialslip.verify.random_scenes import draw, draw_varying, kind_of, varies
 Suite = Literal["quick", "full", "book", "stress"]
 SUITES: tuple[Suite, ...] = get_args(Suite)
 
-# Levels of unlike half-planes by finite elements, which press them from a flat punch on the nodes of the contact
+# Levels of dissimilar half-planes by finite elements, which press them from a flat punch on the nodes of the contact
 _PRESSED = {
     key: Bar(0.05, "elements do not resolve the singular ends of the flat punch from which pressing is made")
     for key in ("fem.q1", "fem.q2")

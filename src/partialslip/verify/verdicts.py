@@ -104,7 +104,7 @@ def print_verdicts(verdicts: Verdicts, console: Console, every: bool = True) -> 
     shown = closest if every or len(closest) <= _SCREEN else [row for row in closest if missed(row)]
     if shown:
         headings = ("case", "method", "closest", "error", "bar", "iterations", "CPU s", "")
-        print_table(console, headings, map(_row, shown), words=(0, 1, 2, 7))
+        print_table(console, headings, map(_verdict_row, shown), words=(0, 1, 2, 7))
     listed = every_one(verdicts)
     for verdict in filter(missed, listed):
         console.print(f"missed: {verdict.case}, {verdict.method}: {verdict.text}", soft_wrap=True, markup=False)
@@ -140,7 +140,7 @@ def _csv(verdicts: Iterable[CaseVerdict]) -> str:
     return csv_text(names, ([getattr(verdict.finite, name) for name in names] for verdict in verdicts))
 
 
-def _row(row: CaseVerdict) -> list[str]:
+def _verdict_row(row: CaseVerdict) -> list[str]:
     error, bar = ("" if number is None else f"{number:.1e}" for number in (row.error, row.bar))
     work = f"{row.iterations:,}", f"{row.cpu_s:.2f}"
     return [row.case, row.method, row.quantity, error, bar, *work, rows.word(row)]

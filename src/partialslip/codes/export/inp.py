@@ -289,7 +289,7 @@ def calculix_deck(
     ]
     blocks, starts = bodies(model, "C3D8", "", thickness, f"_{units.identifier}")
     frame = frame_of(model, starts[1], 2)
-    lines += [*blocks, *_contact(model, contact)]
+    lines += [*blocks, *_contact_cards(model, contact)]
     lines += [f"** {FRAME}", *frame.lines()]
     for number in range(len(model.steps)):
         lines += load_step(model, number, frame, starts[0], 2, thickness, "LOWER, 3, 3\nUPPER, 3, 3")
@@ -297,7 +297,7 @@ def calculix_deck(
     return lines
 
 
-def _contact(model: Model, contact: ContactElements) -> list[str]:
+def _contact_cards(model: Model, contact: ContactElements) -> list[str]:
     unit = model.parts[1].E / model.a
     lines = ["*SURFACE INTERACTION, NAME=INTERFACE"]
     if contact == "mortar":

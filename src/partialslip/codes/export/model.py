@@ -115,7 +115,7 @@ def outlined(
     scene: Scene, size: float = SIZE, width: float | None = None, ends: Sequence[float] = (), fine: float | None = None
 ) -> Outline:
     """Outline of the meshes of ``scene``; parameters and errors as for :func:`modelled`."""
-    _check(scene)
+    _require_exportable(scene)
     a, least, farthest = _half_widths(scene)
     size, fine = size * (least / a), (size / 10 if fine is None else fine) * (least / a)
     limits = [_FILLS / 2 * body.width / a for _, body in scene.bodies if body.width]
@@ -175,7 +175,7 @@ def modelled(
     return Model(scene.name, parts, scene.friction.f, steps, a, line.along * a, line.width, stiffer, turns, overlap)
 
 
-def _check(scene: Scene) -> None:
+def _require_exportable(scene: Scene) -> None:
     """Raise InputError if ``scene`` cannot be exported."""
     if not scene.profile.even:
         raise InputError("profile.x: must begin at 0 to export; only even gaps")
@@ -205,14 +205,14 @@ def _bound(scene: Scene) -> str:
 def _half_widths(scene: Scene) -> tuple[float, float, float]:
     """Contact half-width a of ``scene``, that of the smallest contact of the path, and the largest distance of a
     contact's end from x = 0, m."""
-    ends = {pressing: _ends(scene, pressing) for pressing in dict.fromkeys(scene.pressing)}
+    ends = {pressing: _contact_ends(scene, pressing) for pressing in dict.fromkeys(scene.pressing)}
     widths = [(right - left) / 2 for left, right in ends.values()]
     left, right = ends[scene.end_pressing[scene.largest - 1]]
     return (right - left) / 2, min(widths), max(max(-left, right) for left, right in ends.values())
 
 
-def _ends(scene: Scene, pressing: Pressing) -> tuple[float, float]:
-    """Ends of the contact under P and M, m; for finite or unlike bodies nearly, without friction."""
+def _contact_ends(scene: Scene, pressing: Pressing) -> tuple[float, float]:
+    """Ends of the contact under P and M, m; for finite or dissimilar bodies nearly, without friction."""
     if scene.material.alike and not scene.finite:
         return contact(scene, pressing).ends
     from partialslip.run import run

@@ -26,7 +26,7 @@ def moose_files(scene: Scene, model: Model, name: str) -> dict[str, bytes]:
         f"{name}_tractions_{first:04d}.csv and {name}_tractions_{second:04d}.csv:",
         f"x, p is {_CONTACT}_normal_lm{shear}",
     )
-    lines = [*heading(scene, model, "MOOSE deck", notes), *_lines(_tree(made, name))]
+    lines = [*heading(scene, model, "MOOSE deck", notes), *_input_lines(_tree(made, name))]
     with TemporaryDirectory() as folder:
         path = Path(folder) / "mesh.msh"
         write_quads(path, made.meshes)
@@ -34,12 +34,12 @@ def moose_files(scene: Scene, model: Model, name: str) -> dict[str, bytes]:
     return {f"{name}.i": ("\n".join(lines) + "\n").encode(), f"{name}.msh": mesh}
 
 
-def _lines(tree: Mapping[str, Any], indent: str = "") -> Iterator[str]:
+def _input_lines(tree: Mapping[str, Any], indent: str = "") -> Iterator[str]:
     """Lines of blocks ``tree``; texts with blanks are quoted."""
     for key, value in tree.items():
         if isinstance(value, Mapping):
             yield f"{indent}[{key}]"
-            yield from _lines(value, f"{indent}  ")
+            yield from _input_lines(value, f"{indent}  ")
             yield f"{indent}[]"
         else:
             yield f"{indent}{key} = '{value}'" if " " in str(value) else f"{indent}{key} = {value}"
@@ -75,7 +75,7 @@ def _tree(made: Named, name: str) -> dict[str, Any]:
             }
             for axis, line in zip("xy", made.frame, strict=True)
         },
-        "Contact": {_CONTACT: _contact(model)},
+        "Contact": {_CONTACT: _contact_block(model)},
         **_guide(made),
         "VectorPostprocessors": {
             "tractions": {
@@ -166,7 +166,7 @@ def _boundary_conditions(made: Named) -> dict[str, Any]:
     return held | pressed | {"guide": guide}
 
 
-def _contact(model: Model) -> dict[str, Any]:
+def _contact_block(model: Model) -> dict[str, Any]:
     c = f"{model.parts[1].E / model.a:.6e}"  # pressure over gap, as MOOSE's documentation advises
     common = {"primary": "upper-contact", "secondary": "lower-contact", "formulation": "mortar",
               "normalize_c": "true", "c_normal": c}  # fmt: skip

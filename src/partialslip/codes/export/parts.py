@@ -123,7 +123,7 @@ def flat_parts(
             _mesh(shape, a, reach, width, _times(shape.fineness, sizes), growth, shape.fineness * along),
             stiffer * E,
             nu,
-            _held(shape),
+            _held_sides(shape),
             shape.pulled,
         )
         for shape, (E, nu) in zip(shapes, constants, strict=True)
@@ -135,7 +135,7 @@ def _times(fineness: float, sizes: Mapping[float, float]) -> dict[float, float]:
     return {point: fineness * size for point, size in sizes.items()}
 
 
-def _held(shape: "Shape") -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _held_sides(shape: "Shape") -> tuple[tuple[str, ...], tuple[str, ...]]:
     along_x, along_y = shape.held
     return tuple(along_x), tuple(along_y)
 

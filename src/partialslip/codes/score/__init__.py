@@ -1,7 +1,7 @@
 """Score results of other codes against the solution of a scene."""
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Literal
@@ -19,18 +19,18 @@ from partialslip.result import Result
 from partialslip.run import Run, compared, run
 from partialslip.run.judge import reference as references
 from partialslip.run.judge.measures import levels_of, pressures_of
-from partialslip.run.methods import REFERENCES
 from partialslip.scene import Scene
 from partialslip.scene.reading import AnyScene, as_scene
 from partialslip.tools.bars import LARGEST, Accuracy, asked
 from partialslip.tools.errors import InputError
+from partialslip.tools.methods import REFERENCES
 
 _STRIPS = 2.0  # accuracy: widths of a strip that is not resolved: largest error that it may cause
 
 
 def score(
     scene: AnyScene,
-    file: str | Path,
+    file: str | Path | Sequence[str | Path],
     *,
     bar: Accuracy | None = None,
     reference: str | None = None,
@@ -38,6 +38,7 @@ def score(
     order: int = 1,
     at: tuple[int, int] | None = None,
     columns: Mapping[str, str] | None = None,
+    where: Mapping[str, str] | None = None,
     centre: Literal["given", "auto"] = "given",
     kind: Kind | None = None,
     progress: Callable[[str], None] = lambda _: None,
@@ -48,14 +49,15 @@ def score(
     ----------
     scene : Scene, str or path
         A scene, the name of a shipped one, or the path of a scene file.
-    file : str or Path
-        One of:
+    file : str or Path, or a list of them
+        One file, or one for each load point, of which p and q may be in two. One of:
 
         - a table (.csv, .txt, .tsv, .rpt) with a header line: x (m); p (Pa) or nodal forces Fn (N/m); and dq = q2 - q1,
           q = dq/2, or q1 and q2 (Pa), or dFt, Ft, or Ft1 and Ft2 (N/m). Names of other codes are known, too. If P or M
-          varies, p (Fn) is of load point 2, and p1 (Fn1) of load point 1 must be there, too.
+          varies, p (Fn) is of load point 2, and p1 (Fn1) of load point 1 must be there, too. Columns x/a, p/p0 and
+          q/(f p0) are times a and p0 of the scene. Without a header line three columns are x, p and q.
         - CalculiX's .frd, or .dat with the .frd of the same name;
-        - a format of meshio with point data p (and p1), and dq, q, or q1 and q2.
+        - a format of meshio with the same as point data.
 
         Numbers are in the units in which the scene is shown (:attr:`Scene.shown_in`), in other units if the table's
         header states them, and in those of the deck if CalculiX ran a deck of :func:`partialslip.codes.export.export`.
@@ -73,6 +75,9 @@ def score(
     columns : mapping of str to str, optional
         For tables: x, p (or Fn), p1 (or Fn1) and the shear by name or number (from 1) of a column, or sums and
         differences: ``{"x": "X", "p": "CPRESS", "dq": "S2-S1"}``.
+    where : mapping of str to str, optional
+        Rows to keep, by the values of columns: ``{"surface": "FLAT"}``; two values with a comma between them are those
+        of load points 1 and 2.
     centre : "given" or "auto"
         "auto" moves x = 0 to the middle of the contact; not with a moment or an uneven gap.
     kind : "sampled", "mean" or "nodal", optional
@@ -87,10 +92,11 @@ def score(
         If the file cannot be read, or an argument is not allowed.
     """
     scene = as_scene(scene)
-    if not isinstance(file, (str, os.PathLike)):
-        raise InputError(f"file = {file!r:.60}: must be the path of a file")
-    file, wanted = Path(file), asked(bar)
-    name = "".join(c if c.isprintable() else "?" for c in file.name)
+    given = [file] if isinstance(file, (str, os.PathLike)) or not isinstance(file, Sequence) else list(file)
+    if not given or not all(isinstance(each, (str, os.PathLike)) for each in given):
+        raise InputError(f"file = {file!r:.60}: must be the path of a file, or a list of them")
+    files, wanted = [Path(each) for each in given], asked(bar)
+    name, told = _printable("+".join(each.name for each in files)), " and ".join(map(str, files))
     reference = references.reference(scene).method if reference is None else reference
     if reference not in REFERENCES:
         raise InputError(f"reference {reference!r}: must be one of {', '.join(REFERENCES)}")
@@ -100,16 +106,20 @@ def score(
         raise InputError(f"kind {kind!r}: must be one of {', '.join(KINDS)}")
     if centre == "auto" and not scene.even:
         raise InputError("centre 'auto': must be 'given' with a moment or an uneven gap: the middle is not at x = 0")
-    found = read_tractions(file, scene, factors, order, at, columns, kind)
+    found = read_tractions(files, scene, factors, order, at, columns, kind, where, centre == "auto")
     if centre == "auto":
-        found = centred(found, str(file), scene.units)
-    result = scored(scene, found, name, str(file))
+        found = centred(found, told, scene.units)
+    result = scored(scene, found, name, told)
     outcome = run(scene, [reference], progress=progress)
     known = outcome.results[reference]
     seen = _read_as(scene, result, known, wanted.bars if wanted else None)
     if seen.traction.q1 is None:
         outcome.results[reference] = _of_the_change(known)
     return compared(scene, outcome.plan, outcome.results | {name: seen}, wanted)
+
+
+def _printable(name: str) -> str:
+    return "".join(c if c.isprintable() else "?" for c in name)
 
 
 def _of_the_change(reference: Result) -> Result:

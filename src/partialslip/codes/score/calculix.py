@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.codes.score.rows import Label, check_equal_x
 from partialslip.scene.units import SYSTEMS, Units
 from partialslip.tools.arrays import Array, Indices
 from partialslip.tools.errors import InputError
@@ -66,7 +65,7 @@ class LoadPoints(NamedTuple):
 
 
 def read_frd(text: str, origin: str, chosen: tuple[int, int] | None, load_points: LoadPoints) -> dict[str, Array]:
-    """Columns x, p, p1, q1 and q2 of an ASCII .frd file, at the nodes in contact at one of the load points.
+    """Columns x, p, p1, q1, q2, y and z of an ASCII .frd file, at the nodes in contact at one of the load points.
 
     Parameters
     ----------
@@ -90,10 +89,7 @@ def read_frd(text: str, origin: str, chosen: tuple[int, int] | None, load_points
     stresses = np.array([each.stress for each in found])
     touched = (stresses != 0).any(axis=(0, 2))
     x, *across = (_at_nodes(numbers, column, found[0].keys[touched, 0], origin) for column in points.T)
-    columns = _columns(x, stresses[:, touched])
-    labels = [Label(name, number, column.tolist()) for name, number, column in zip("yz", (2, 3), across, strict=True)]
-    check_equal_x(columns, labels, origin, "write those with one {name} to a table of x, p, q1 and q2, and score that")
-    return columns
+    return _columns(x, stresses[:, touched]) | dict(zip("yz", across, strict=True))
 
 
 def read_dat(

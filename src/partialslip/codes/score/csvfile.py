@@ -1,21 +1,34 @@
-"""Read tractions from a table: values separated by commas, semicolons, tabs or blanks, with a header line."""
+"""Columns of x, pressure and shear of a table, and a table to fill in."""
 
+import itertools
+import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.codes.score.headers import COLUMN_DIMENSIONS, headings, known, selected
+from partialslip.codes.score.headers import COLUMN_DIMENSIONS, NODES, Asked, known, numbered, selected, shown
 from partialslip.codes.score.rows import Label, check_equal_x
 from partialslip.codes.score.samples import PLAUSIBLE, unusable
 from partialslip.scene import Scene
+from partialslip.scene.columns import place_of, split_unit
+from partialslip.scene.texttable import TextTable
 from partialslip.scene.units import SI, Units
 from partialslip.tools.arrays import Array, Mask
 from partialslip.tools.errors import InputError
 
-_NO_VALUE = ("", "-", "--", "novalue", "no value", "n/a", "na")
-_METHOD = "method"  # fixed: column of the tables that run writes
-_MOST_ROWS = 1_000_000  # limit: rows of a table
+#: Columns by which rows of several states and surfaces are told apart.
+_TELLS = re.compile(
+    r"(?:part|surf(?:ace)?|side|body|instance|region|pair|set|load.?case|case|load.?point|step|frame|inc(?:rement)?|time|inst|nume_ordre|"
+    r"block|source|file|method)(?:[ _.-]?(?:id|no|name|number))?",
+    re.IGNORECASE,
+)
+_ACROSS = re.compile(
+    r"(?:y|z|coord?\.?(?:coor)?[23]|coord?_[yz]|[yz] location|(?:points|coord(?:inate)?s?)[:_][12])", re.I
+)
+_FLAT = 0.05  # limit: of the extent of the contact along x: largest extent of its points across
+_FEW = 12  # display: most lines of points of which one is to be kept
+_SHOWN = 6  # display: values of a column in a message
 _TEMPLATE_ROWS = 81  # display: rows of the template
 _TEMPLATE_REACH = 1.1  # display: largest |x| of the template, in contact half-widths
 
@@ -26,157 +39,201 @@ class Columns(NamedTuple):
     Parameters
     ----------
     values : dict of (n,) arrays
-        By name.
+        By name, SI units.
     made_of : str
         Expressions for the columns, if they differ from the columns' names.
     notes : tuple of str
     moment : bool
         Whether the shear is known at one load point only.
+    nodes : list or None
+        Numbers of the nodes, by row, if the file has them.
     """
 
     values: dict[str, Array]
     made_of: str = ""
     notes: tuple[str, ...] = ()
     moment: bool = False
+    nodes: list[str] | None = None
 
 
-def read_csv(
-    text: str, origin: str, chosen: Mapping[str, str] | None = None, units: Units = SI, anew: bool | None = False
-) -> Columns:
-    """Read columns x, p (or Fn) and shear from a table with a header line, in SI units.
-
-    ``#`` begins a comment. Separators are commas, semicolons, tabs or blanks. Decimal commas are allowed where commas
-    do not separate. Column names are x, p, Fn, p1, Fn1, dq, q, q1, q2, dFt, Ft, Ft1, Ft2 or those of other codes
-    (:data:`partialslip.codes.score.headers.NAMES`), with a unit in brackets if not in ``units``. Rows without values
-    are skipped.
+def columns_of(table: TextTable, asked: Asked, chosen: Mapping[str, str] | None = None, units: Units = SI) -> Columns:
+    """Columns x, p (or Fn) and shear of a ``table``, in SI units. Rows without values are left out.
 
     Parameters
     ----------
-    text, origin : str
-        Content of the file, and its name for messages.
+    table : TextTable
+    asked : Asked
     chosen : mapping of str to str, optional
         Expression for each column: a name or number (from 1) of a column of the table, or sums and differences.
     units : Units
-        Units of the columns without a unit in brackets.
-    anew : bool or None
-        Whether the pressure varies: then p1 (or Fn1) is read, too; None: if it is there.
+        Units of the columns that state none.
 
     Raises
     ------
     InputError
-        If the table cannot be read; the message names line and column.
+        If a column is missing, a value is no number, or rows are of several surfaces or load points.
     """
-    table = _table(text, origin, headless=chosen is not None)
-    names = table.names
+    names, notes = table.names, list(table.notes)
     if chosen:
-        wanted = selected(names, chosen, origin, anew)
+        wanted = selected(names, chosen, asked)
+    elif not table.head:
+        wanted = numbered(names, asked)
+        told = ", ".join(f"{name}={k + 1}" for k, name in enumerate(wanted))
+        notes.append(f"no heading: read as --columns {told}")
     else:  # a column without values is none
-        filled = [not table.lines or not all(map(_no_value, table.column(k))) for k in range(len(names))]
-        wanted = known([name if some else "" for name, some in zip(names, filled, strict=True)], origin, anew)
+        filled = [not table.lines or not isinstance(each, list) or any(each) for each in table.columns]
+        wanted = known([name if some else "" for name, some in zip(names, filled, strict=True)], asked)
     used = sorted({each for column in wanted.values() for each in column.parts})
-    kept = np.flatnonzero(~np.any([_empty(table.column(k)) for k in used], axis=0))
-    left_out = len(table.lines) - len(kept)
-    if left_out:
-        table = table.only(kept.tolist())
-    numbers = {k: _numbers(table.column(k), table.lines, names[k], origin) for k in used}
-    sums = {name: sum((sign * numbers[column] for column, sign in each.parts.items()), np.zeros(len(kept)))
+    numbers = {k: table.numbers(k, asked.origin) for k in used}
+    missing = np.isnan(np.stack([*numbers.values()])).any(axis=0)
+    if missing.any():
+        table = table.only(np.flatnonzero(~missing).tolist())
+        numbers = {k: column[~missing] for k, column in numbers.items()}
+        count = int(np.count_nonzero(missing))
+        notes.append(f"left out: {count} row{'s' * (count > 1)} without values")
+    for k, column in numbers.items():
+        if (wrong := unusable(column)).any():
+            first = int(wrong.argmax())
+            told = f"line {table.lines[first]}: {names[k]} = {str(table.columns[k][first])[:40]}"
+            raise InputError(f"{asked.origin}: {told}: must be {PLAUSIBLE}")
+    sums = {name: sum((sign * numbers[column] for column, sign in each.parts.items()), np.zeros(len(table.lines)))
             for name, each in wanted.items()}  # fmt: skip
     values = {
         name: column * unit if (unit := wanted[name].unit) else units.to_si(column, COLUMN_DIMENSIONS[name])
         for name, column in sums.items()
     }
-    _check_single(table, used, values, origin)
-    notes = [f"left out: {left_out} row{'s' * (left_out > 1)} without values"] if left_out else []
+    scaled = sorted({name for each in wanted.values() for name in asked.scales if _is_over(each.text, name)})
+    if scaled and any(each.unit == asked.scales.get(name) for each in wanted.values() for name in scaled):
+        notes.append(f"normalised columns: times the scene's {', '.join(_scale(n, asked, units) for n in scaled)}")
+    length = wanted["x"].unit or units.size("m") if "x" in wanted else 1.0
+    kept, left_out = _of_one(table, used, values, length, asked.origin)
+    notes += left_out
+    node = next((place_of(name, [each.lower() for each in names]) for name in NODES
+                 if name in map(str.lower, names)), None)  # fmt: skip
+    labels = None if node is None else [str(value) for value, one in zip(table.columns[node], kept, strict=True) if one]
     expressions = [f"{name} = {each.text}" for name, each in wanted.items() if each.text != name]
-    return Columns(values, ", ".join(expressions), tuple(notes), any(each.moment for each in wanted.values()))
+    moment = any(each.moment for each in wanted.values())
+    return Columns(
+        {name: column[kept] for name, column in values.items()}, ", ".join(expressions), tuple(notes), moment, labels
+    )
 
 
-class _Table(NamedTuple):
-    """Fields of a table: ``names`` of the ``columns``, the ``lines`` of the file in which its rows are, and the line
-    with the header, ``head``. The ``separator`` is empty for blanks; ``plain`` fields are numbers as they stand."""
-
-    names: list[str]
-    columns: list[list[str]]
-    lines: list[int]
-    head: int
-    separator: str
-    plain: bool
-
-    def column(self, k: int) -> list[str]:
-        """Fields of column ``k``."""
-        return self.columns[k] if self.plain else [_field(field, self.separator) for field in self.columns[k]]
-
-    def only(self, kept: list[int]) -> "_Table":
-        """The table with the ``kept`` rows alone."""
-        columns = [[column[row] for row in kept] for column in self.columns]
-        return self._replace(columns=columns, lines=[self.lines[row] for row in kept])
+def _is_over(text: str, scale: str) -> bool:
+    return re.sub(r"[\s()*.·]", "", text.partition("/")[2]).lower() == scale
 
 
-def _table(text: str, origin: str, headless: bool) -> _Table:
-    """Split ``text`` into fields; a table without a header line is allowed if ``headless``."""
-    bare = text.splitlines()
-    if "#" in text:
-        bare = [line.partition("#")[0] for line in bare]
-    numbers = [number for number, line in enumerate(bare, start=1) if line and not line.isspace()]
-    if not numbers:
-        raise InputError(f"{origin}: empty: must have a header line with x, p and dq")
-    bare = [bare[number - 1] for number in numbers]
-    first, head = bare[0].strip(" \r"), numbers[0]
-    separator = max(",;\t", key=first.count)
-    separator = separator if separator in first else ""
-    fields = [_field(field, separator) for field in first.split(separator or None)]
-    if all(map(_is_number, fields)):
-        if not headless:
-            raise InputError(f"{origin}: line {head}: must be a header line with x, p and dq; or give --columns")
-        names = [str(k + 1) for k in range(len(fields))]
-    else:
-        names = fields if separator else headings(first)
-        bare, numbers = bare[1:], numbers[1:]
-    if len(bare) > _MOST_ROWS:
-        raise InputError(f"{origin}: {len(bare)} rows: must be at most {_MOST_ROWS}")
-    width = len(names)
-    counts = (line.count(separator) + 1 if separator else len(line.split()) for line in bare)
-    if short := next((n for n, count in zip(numbers, counts, strict=True) if count != width), None):
-        raise InputError(f"{origin}: line {short}: must have {width} fields, like the header line")
-    every = (separator or " ").join(bare).split(separator or None) if bare else []  # a list a row would take far longer
-    plain = '"' not in text and (separator == "," or "," not in text)
-    return _Table(names, [every[k::width] for k in range(width)], numbers, head, separator, plain)
+def _scale(name: str, asked: Asked, units: Units) -> str:
+    """A scale of the scene and its value, as text."""
+    return f"{name} = {units.labelled(asked.scales[name], 'm' if name == 'a' else 'Pa', 7)}"
 
 
-def _check_single(table: _Table, used: list[int], values: Mapping[str, Array], origin: str) -> None:
-    """Check that the rows are of one method, surface and load point; ``used`` columns do not tell them apart.
+def where(table: TextTable, asked: Mapping[str, str], origin: str) -> list[TextTable]:
+    """The rows of ``table`` in which each column of ``asked`` has the value asked for; or a table for each load point,
+    where that is several values, with commas between them.
 
-    Raises InputError with a command that keeps some of them.
+    Raises
+    ------
+    InputError
+        If there is no such column, or no row with the value.
     """
-    split = f"-F'{table.separator}' ".replace("\t", "\\t") if table.separator else ""
-    advice = f"keep one, as by awk {split}'NR == {table.head} || ${{number}} == \"{{kept}}\"' {origin} > one.csv"
-    labels = (Label(name, k + 1, table.column(k)) for k, name in enumerate(table.names) if k not in used)
-    check_equal_x(values, labels, origin, advice)
-    if _METHOD in table.names:
-        label = Label(_METHOD, 1 + (k := table.names.index(_METHOD)), table.column(k))
-        if len(kinds := label.kinds) > 1:
-            kept = advice.format(number=label.number, kept=kinds[0])
-            raise InputError(f"{origin}: tractions by {', '.join(kinds)}: must be by one method: {kept}")
+    tables = [table]
+    for name, value in asked.items():
+        place = place_of(name, table.names)
+        if place is None:
+            raise InputError(
+                f"--where {name}={value}: {origin} has the columns {shown(table.names)}; must be one of them"
+            )
+        kinds = _kinds(table, place)
+        values = [value] if any(_same(value, kind) for kind in kinds) else value.split(",")
+        for one in values:
+            if not any(_same(one, kind) for kind in kinds):
+                raise InputError(f"--where {name}={one}: must be one of {_listed(kinds)}, as {origin} has it")
+        if len(values) > 1 and len(tables) > 1:
+            raise InputError(
+                f"--where {name}={value}: must be one value, as another column has one for each load point"
+            )
+        tables = [each.only([row for row, own in enumerate(each.columns[place]) if _same(one, str(own))])
+                  for one in values for each in tables]  # fmt: skip
+    if asked and any(not each.lines for each in tables):
+        raise InputError(f"--where {', '.join(f'{n}={v}' for n, v in asked.items())}: {origin} has no such row")
+    return tables
 
 
-def _field(text: str, separator: str) -> str:
-    """A field without blanks and one pair of quotes around it. Commas that do not separate are decimal commas."""
-    bare = text.strip()
-    bare = bare[1:-1] if len(bare) > 1 and bare[0] == bare[-1] == '"' else bare
-    return bare if separator == "," else bare.replace(",", ".")
+def _kinds(table: TextTable, place: int) -> list[str]:
+    """Values of a column, each once."""
+    return list(dict.fromkeys(map(_shown, table.columns[place])))
 
 
-def _no_value(field: str) -> bool:
-    return field.strip().lower() in _NO_VALUE
+def _shown(value: object) -> str:
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
-def _empty(fields: list[str]) -> Mask:
-    """Where ``fields`` (n,) hold no value, (n,)."""
+def _same(one: str, other: str) -> bool:
+    """Whether two values of a column are the same text or number."""
+    if one.strip().lower() == other.strip().lower():
+        return True
     try:
-        np.fromiter(map(float, fields), float, len(fields))
+        return abs(float(one) - float(other)) <= 1e-9 * abs(float(other))
     except ValueError:
-        return np.array([_no_value(field) for field in fields], bool)
-    return np.zeros(len(fields), bool)
+        return False
+
+
+def _listed(kinds: list[str]) -> str:
+    more = f" ... ({len(kinds)} values)" if len(kinds) > _SHOWN else ""
+    return ", ".join(kinds[:_SHOWN]) + more
+
+
+def _of_one(
+    table: TextTable, used: list[int], values: Mapping[str, Array], unit: float, origin: str
+) -> tuple[Mask, list[str]]:
+    """The rows of one surface, state and method, (n,), and notes; ``used`` columns do not tell rows apart. x is in
+    ``unit``, m.
+
+    Raises InputError with what to type to keep some of them.
+    """
+    every, notes = np.ones(len(table.lines), bool), list[str]()
+    if not {"x"} < set(values):
+        return every, notes
+    x, pressed = values["x"], np.any([column != 0 for name, column in values.items() if name != "x"], axis=0)
+    for k, name in enumerate(table.names):
+        if k in used or not _TELLS.fullmatch(split_unit(name)[0].strip()) or len(kinds := _kinds(table, k)) < 2:
+            continue
+        places = {kind: at for at, kind in enumerate(kinds)}
+        own = np.array([places[_shown(each)] for each in table.columns[k]])
+        told = np.unique(own[pressed & every])
+        if len(told) == 1:
+            every &= own == told[0]
+            if not every.all():
+                others = _listed([kind for at, kind in enumerate(kinds) if at != told[0]])
+                notes.append(f"left out: rows with {name} {others}, where tractions are zero")
+            continue
+        spans = sorted((x[own == at].min(), x[own == at].max()) for at in told)
+        if name.lower() == "method" or any(after[0] < before[1] for before, after in itertools.pairwise(spans)):
+            raise InputError(
+                f"{origin}: {name} is {_listed(kinds)}: must be one: keep one, as by {_type(name, kinds[-1])}"
+            )
+    x, pressed = x[every], pressed[every]
+    across = {k: name for k, name in enumerate(table.names) if k not in used and _ACROSS.fullmatch(split_unit(name)[0])}
+    if pressed.any():
+        low, high = x[pressed].min(), x[pressed].max()
+        for k, name in across.items():
+            inside = table.numbers(k, origin)[every][(x >= low) & (x <= high)]
+            length = split_unit(name)[1] or unit
+            if np.ptp(inside) * length > _FLAT * (high - low):
+                kinds = list(map(_shown, np.unique(inside)[::-1].tolist()))
+                keep = f"keep one, as by {_type(name, kinds[0])}" if len(kinds) <= _FEW else "keep those of the contact"
+                apart = f"points with p lie apart across x: must be on one line; {name} is {_listed(kinds)}"
+                raise InputError(f"{origin}: {apart}: {keep}")
+    kept = table.only(np.flatnonzero(every).tolist())
+    labels = (Label(name, k + 1, list(kept.columns[k])) for k, name in enumerate(table.names) if k not in used)
+    advice = f"keep one, as by {_type('{name}', '{kept}')}"
+    check_equal_x({name: each[every] for name, each in values.items()}, labels, origin, advice)
+    return every, notes
+
+
+def _type(name: str, kind: str) -> str:
+    """The option that keeps the rows in which column ``name`` is ``kind``."""
+    return f'--where "{name}={kind}"'
 
 
 def csv_template(scene: Scene, a: float) -> str:
@@ -201,23 +258,3 @@ def csv_template(scene: Scene, a: float) -> str:
         f"{','.join(units.heading(name, COLUMN_DIMENSIONS[name]) for name in names)}\n"
     )
     return head + "".join(f"{point:.9e}{',0' * (len(names) - 1)}\n" for point in x)
-
-
-def _numbers(values: list[str], lines: list[int], name: str, origin: str) -> Array:
-    try:
-        found = np.fromiter(map(float, values), float, len(values))
-    except ValueError:
-        line, value = next((n, v) for n, v in zip(lines, values, strict=True) if not _is_number(v))
-        raise InputError(f"{origin}: line {line}: {name} = {value[:40]!r}: must be a number") from None
-    if (wrong := unusable(found)).any():
-        first = int(wrong.argmax())
-        raise InputError(f"{origin}: line {lines[first]}: {name} = {values[first][:40]}: must be {PLAUSIBLE}")
-    return found
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

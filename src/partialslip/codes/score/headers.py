@@ -1,10 +1,11 @@
-"""Header lines of tables: quantity and unit of each column, by the names of this package and of other codes."""
+"""Columns of tables: quantity and unit of each, by the names of this package and of other codes."""
 
 import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from partialslip.scene.units import LENGTHS, Dimension
+from partialslip.scene.columns import place_of, split_unit
+from partialslip.scene.units import Dimension
 from partialslip.tools.errors import InputError
 
 NORMAL = ("p", "Fn")
@@ -19,11 +20,14 @@ COLUMN_DIMENSIONS: dict[str, Dimension] = {
 }  # fmt: skip
 _OWN = tuple(COLUMN_DIMENSIONS)
 _SHEAR = tuple(name for names in SHEAR_COLUMNS for name in names)
+_ALONE = {"q2": "q", "Ft2": "Ft"}  # shear at load point 2 alone
 
 #: Other names of x, p and the shear traction at one load point, in lower case, with the sign that makes p positive.
 NAMES = {
     "x": dict.fromkeys(
-        ("x", "coor1", "coord1", "coor_x", "coord_x", "points:0", "points_0", "x location", "xloc"), 1
+        ("x", "coor1", "coord1", "coord.coor1", "coor_x", "coord_x", "x_coord", "xcoord", "x coordinate",
+         "x-coordinate", "x_coordinate", "points:0", "points_0", "coordinates:0", "coord:0", "coords:0", "x location",
+         "xloc"), 1
     ),
     "p": {
         "cpress": 1, "contact pressure": 1, "contact_pressure": 1, "pressure": 1,  # Abaqus, CalculiX, MOOSE, ANSYS
@@ -33,16 +37,16 @@ NAMES = {
     },
     "q": {
         "cshear1": 1, "cshear": 1, "taur": 1, "lags_f1": 1, "tangential_lm": 1, "frictional_tangential_lm": 1,
-        "lambda_t": 1,
+        "frictional_lm": 1, "lambda_t": 1, "shear": 1, "shear stress": 1, "shear_stress": 1, "shear traction": 1,
     },
 }  # fmt: skip
+#: Names of the way along a path, in lower case: x of a table that has no other.
+PATHS = ("true distance along path", "distance along path", "path distance", "distance", "arc_length")
+#: Names of numbers of nodes, in lower case.
+NODES = ("node", "node label", "node number", "node_number", "node id", "node_id", "nodeid", "nodal number", "id")
 
-#: Units by name, in SI units.
-SI_FACTORS = {
-    **LENGTHS, "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "psi": 6894.757293168, "ksi": 6894757.293168,
-    "n/m": 1.0, "n/mm": 1e3, "n/m^2": 1.0, "n/mm^2": 1e6, "n/mm2": 1e6, "n/um^2": 1e12,
-}  # fmt: skip
-_UNIT = re.compile(r"^(?P<name>.*?\S)\s*[\[(](?P<unit>[^\[\]()]*)[\])]$")
+_ENDS = 9  # fixed: letters from which on a name may stand behind another one, as in pad_normal_lm
+_PAIR = re.compile(r"^(\S+(?: \S+)*?)(?:\s{2,}(?=\S)|\s+(?=\S{2,}/\S{2,}$))(\S.*)$")  # CPRESS   SLAVE/MASTER
 _TERM = re.compile(r"(?<=\S)\s*([+-])\s*(?=\S)")
 
 
@@ -58,7 +62,7 @@ class Wanted(NamedTuple):
     text : str
         The expression in words.
     moment : bool
-        Whether the column is the shear at one load point, under another code's name.
+        Whether the column is the shear at one load point.
     """
 
     parts: dict[int, float]
@@ -67,100 +71,147 @@ class Wanted(NamedTuple):
     moment: bool = False
 
 
-def headings(line: str) -> list[str]:
-    """Split a header ``line`` at blanks, or at two or more blanks if names contain blanks.
+class Asked(NamedTuple):
+    """What a table must have, by its scene.
 
-    A unit in brackets stays with the name before it.
+    Parameters
+    ----------
+    origin : str
+        Name of the file, for messages.
+    anew : bool or None
+        Whether the pressure varies: then p1 (or Fn1) is asked for, too; None: it is read if it is there.
+    shear : bool
+        Whether there is friction, and so a shear traction.
+    part : bool
+        Whether the table may be a part of several: without pressure or shear, or with nodes' numbers instead of x.
+    scales : mapping of str to float
+        a, p0, fp0 and 2fp0 of the scene, SI units, for normalised columns.
     """
-    wide = re.split(r"\s{2,}", line.strip())
-    parts = wide if len(wide) > 2 else line.split()
-    names: list[str] = []
-    for part in parts:
-        if names and part[0] in "[(":
-            names[-1] += f" {part}"
-        else:
-            names.append(part)
-    return names
+
+    origin: str
+    anew: bool | None = False
+    shear: bool = True
+    part: bool = False
+    scales: Mapping[str, float] = {}
 
 
-def known(names: list[str], origin: str, anew: bool | None = False) -> dict[str, Wanted]:
-    """Find x, p or Fn, p1 or Fn1 if the pressure varies (``anew``; None: if it is there), and the shear among the
-    ``names`` of a header line, in this order.
+def known(names: list[str], asked: Asked) -> dict[str, Wanted]:
+    """Find x, p or Fn, p1 or Fn1 if the pressure varies, and the shear among the ``names`` of a header line.
 
     Raises
     ------
     InputError
-        If one is missing or ambiguous; ``origin`` is the file's name.
+        If one is missing or ambiguous.
     """
-    plain = [_split(name) for name in names]
+    plain = [_plain(name, asked.scales) for name in names]
     found = {
         name: [Wanted({k: 1.0}, unit, names[k]) for k, (own, unit) in enumerate(plain) if own == name] for name in _OWN
     }
     for name, group in (("x", ("x",)), ("p", NORMAL), ("q", _SHEAR)):
         if not any(found[each] for each in group):
-            signs, others = NAMES[name], [(k, own.lower(), unit) for k, (own, unit) in enumerate(plain)]
-            found[name] = [
-                Wanted({k: signs[own]}, unit, names[k], name == "q") for k, own, unit in others if own in signs
-            ]
+            signs = NAMES[name]
+            others = [(k, _listed(own.lower(), signs), unit) for k, (own, unit) in enumerate(plain)]
+            found[name] = [Wanted({k: signs[own]}, unit, names[k], name == "q") for k, own, unit in others if own]
+    if not found["x"]:
+        found["x"] = [Wanted({k: 1.0}, unit, names[k]) for k, (own, unit) in enumerate(plain) if own.lower() in PATHS]
     for name, places in found.items():
         if len(places) > 1:
             told = " and ".join(repr(place.text) for place in places)
             raise InputError(
-                f"{origin}: column {name!r}: must be there once, not {len(places)} times ({told}); use --columns"
+                f"{asked.origin}: column {name!r}: must be there once, not {len(places)} times ({told}); use --columns"
             )
-    return _complete({name: each[0] for name, each in found.items() if each}, names, origin, anew)
+    wanted = {name: each[0] for name, each in found.items() if each}
+    pairs = {name: _PAIR.match(split_unit(each.text)[0]) for name, each in wanted.items()}
+    of = {match[2] for match in pairs.values() if match}
+    if len(of) > 1:
+        raise InputError(f"{asked.origin}: columns of the pairs {', '.join(sorted(of))}: must be of one; use --columns")
+    return _complete(wanted, names, asked)
 
 
-def selected(names: list[str], chosen: Mapping[str, str], origin: str, anew: bool | None = False) -> dict[str, Wanted]:
+def numbered(names: list[str], asked: Asked) -> dict[str, Wanted]:
+    """Take the columns of a table without header line as x, p and q, or as x and p where there is no friction.
+
+    Raises
+    ------
+    InputError
+        If there are more or less.
+    """
+    own = ("x", "p", "q") if asked.shear or len(names) > len(NORMAL) else ("x", "p")
+    if len(names) != len(own):
+        raise InputError(
+            f"{asked.origin}: line 1: must be a header line with x, p and dq, as it has {len(names)} columns; or give "
+            "--columns, for example x=1,p=2,q=3"
+        )
+    wanted = {name: Wanted({k: 1.0}, None, f"column {k + 1}", name == "q") for k, name in enumerate(own)}
+    return _complete(wanted, names, asked)
+
+
+def selected(names: list[str], chosen: Mapping[str, str], asked: Asked) -> dict[str, Wanted]:
     """Parse the expressions ``chosen`` for the columns of :func:`known`: names or numbers of columns, sums and
     differences.
 
     Raises
     ------
     InputError
-        If an expression has unknown columns or mixed units, or one is missing; ``origin`` is the file's name.
+        If an expression has unknown columns or mixed units, or one is missing.
     """
     if unknown := [name for name in chosen if name not in _OWN]:
         raise InputError(f"--columns {unknown[0]}: must be one of {', '.join(_OWN)}")
-    if anew is False and (first := next((name for name in FIRST.values() if name in chosen), None)):
+    if asked.anew is False and (first := next((name for name in FIRST.values() if name in chosen), None)):
         raise InputError(f"--columns {first}: must be left out, as the scene's pressure does not vary")
-    wanted = {name: _made_of(chosen[name], names, origin) for name in _OWN if name in chosen}
-    return _complete(wanted, names, origin, anew)
+    wanted: dict[str, Wanted] = {}
+    for name in _OWN:
+        try:
+            wanted |= {name: _made_of(chosen[name], names, asked)} if name in chosen else {}
+        except InputError:
+            if not asked.part:
+                raise
+    return _complete(wanted, names, asked)
 
 
-def _complete(wanted: dict[str, Wanted], names: list[str], origin: str, anew: bool | None) -> dict[str, Wanted]:
-    """Check for x, one of p and Fn, its value at load point 1 if the pressure varies (``anew``; None: if it is there),
-    and the matching shear, and put them in this order."""
+def shown(names: list[str]) -> str:
+    """``names`` of columns for a message."""
+    return ", ".join(repr(name) for name in names)[:100]
+
+
+def _complete(wanted: dict[str, Wanted], names: list[str], asked: Asked) -> dict[str, Wanted]:
+    """Check for x, one of p and Fn, its value at load point 1 if the pressure varies, and the matching shear, and put
+    them in this order."""
     normal = [name for name in NORMAL if name in wanted]
     shears = [shear for shear in SHEAR_COLUMNS if set(shear) <= set(wanted)]
     shears = [shear for shear in shears if len(shear) == 2] or shears  # their difference is dq
+    if not shears and (alone := next((name for name in _ALONE if name in wanted), None)):
+        shears, wanted = [(_ALONE[alone],)], wanted | {_ALONE[alone]: wanted[alone]._replace(moment=True)}
+    if asked.part:
+        if len(normal) < 2 and len(shears) < 2 and (normal or shears or "x" in wanted):
+            return {name: wanted[name] for name in ("x", *normal, *(shears[0] if shears else ())) if name in wanted}
+    elif "x" in wanted and len(normal) == 1 and not shears and not asked.shear:
+        shears = [()]  # type: ignore[list-item]
     if "x" not in wanted or len(normal) != 1 or len(shears) != 1:
-        shown = ", ".join(repr(name) for name in names)[:100]
         raise InputError(
-            f"{origin}: columns {shown}: must be x; p or Fn; and one of dq, q, q1 and q2, dFt, Ft, Ft1 and Ft2; "
-            "name them with --columns x=...,p=...,dq=..."
+            f"{asked.origin}: columns {shown(names)}: must be x; p or Fn; and one of dq, q, q1 and q2, dFt, Ft, Ft1 "
+            "and Ft2; name them with --columns x=...,p=...,dq=..."
         )
-    if (normal[0] == "Fn") != shears[0][0].endswith(("Ft", "Ft1")):
-        raise InputError(f"{origin}: columns {normal[0]} and {shears[0][0]}: must be both tractions or both forces")
+    if shears[0] and (normal[0] == "Fn") != shears[0][0].endswith(("Ft", "Ft1")):
+        raise InputError(
+            f"{asked.origin}: columns {normal[0]} and {shears[0][0]}: must be both tractions or both forces"
+        )
     first = FIRST[normal[0]]
-    if anew and first not in wanted:
+    if asked.anew and first not in wanted:
         at = f"{first}, {normal[0]} at load point 1, as the scene's pressure varies"
-        raise InputError(f"{origin}: columns: must include {at}; name it with --columns {first}=...")
-    pressures = (*normal, first) if anew or (anew is None and first in wanted) else normal
+        raise InputError(f"{asked.origin}: columns: must include {at}; name it with --columns {first}=...")
+    pressures = (*normal, first) if asked.anew or (asked.anew is None and first in wanted) else normal
     return {name: wanted[name] for name in ("x", *pressures, *shears[0])}
 
 
-def _made_of(text: str, names: list[str], origin: str) -> Wanted:
+def _made_of(text: str, names: list[str], asked: Asked) -> Wanted:
     """Parse ``text``: a column's name, with or without unit, or number; or sums and differences of columns."""
-    plain = [_split(name) for name in names]
-    places = [k for k, name in enumerate(names) if text in (name, plain[k][0])]
-    if not places and text.isdigit() and 1 <= int(text) <= len(names):
-        places = [int(text) - 1]
-    if len(places) == 1:
-        return Wanted({places[0]: 1.0}, plain[places[0]][1], text)
+    place = place_of(text, names)
+    if place is not None:
+        return Wanted({place: 1.0}, _plain(names[place], asked.scales)[1], text)
     for sign in reversed(list(_TERM.finditer(text))):
-        first = _made_of(text[: sign.start()], names, origin)
-        second = _made_of(text[sign.end() :], names, origin)
+        first = _made_of(text[: sign.start()], names, asked)
+        second = _made_of(text[sign.end() :], names, asked)
         if first.unit != second.unit:
             raise InputError(f"--columns {text}: {first.text} and {second.text} must be in the same unit")
         turn = 1.0 if sign[1] == "+" else -1.0
@@ -168,21 +219,28 @@ def _made_of(text: str, names: list[str], origin: str) -> Wanted:
         for column, own in second.parts.items():
             parts[column] = parts.get(column, 0.0) + turn * own
         return Wanted(parts, first.unit, text)
-    if not places and text.startswith("-"):
-        first = _made_of(text[1:].strip(), names, origin)
+    if text.startswith("-"):
+        first = _made_of(text[1:].strip(), names, asked)
         return Wanted({column: -sign for column, sign in first.parts.items()}, first.unit, text)
-    shown = ", ".join(repr(name) for name in names)[:100]
     raise InputError(
-        f"--columns {text}: {origin} has the columns {shown}; must be one of them once, or a number from 1"
+        f"--columns {text}: {asked.origin} has the columns {shown(names)}; must be one of them once, or a number from 1"
     )
 
 
-def _split(name: str) -> tuple[str, float | None]:
-    """Split a column's name into the name and the unit, as a factor to SI units; None if there is no unit."""
-    parts = _UNIT.match(name)
-    if parts is None:
-        return name, None
-    unit = parts["unit"].strip().lower()
-    if unit not in SI_FACTORS:
-        return name, None
-    return parts["name"], SI_FACTORS[unit]
+def _listed(name: str, signs: Mapping[str, int]) -> str:
+    """The name in ``signs`` that ``name`` is or ends in; empty if there is none."""
+    return name if name in signs else next(
+        (each for each in signs if len(each) >= _ENDS and name.endswith(f"_{each}")), ""
+    )  # fmt: skip
+
+
+def _plain(name: str, scales: Mapping[str, float]) -> tuple[str, float | None]:
+    """Split a column's name into the name, without the names of surfaces, and the unit in SI units: that behind it, or
+    the scale that it is divided by; None if there is neither."""
+    own, unit = split_unit(name)
+    over, _, by = own.partition("/")
+    scale = re.sub(r"[\s()*.·]", "", by).lower()
+    if unit is None and scale in scales:
+        return over.strip(" ()"), scales[scale]
+    match = _PAIR.match(own)
+    return (match[1] if match else own), unit

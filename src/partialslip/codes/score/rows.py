@@ -72,6 +72,10 @@ def check_equal_x(values: Mapping[str, Array], labels: Iterable[Label], origin: 
     for label in labels:
         kinds = label.kinds
         if len(kinds) <= _FEW and len({label.values[row] for row in same}) == len(same):
-            kept = advice.format(name=label.name, number=label.number, kept=kinds[-1])
+            sums = dict.fromkeys(reversed(kinds), 0.0)
+            for value, size in zip(label.values, np.abs(columns[worst]).tolist(), strict=True):
+                sums[f"{value:g}" if isinstance(value, float) else str(value)] += size
+            likely = max(sums, key=lambda kind: sums[kind])  # of other lines of points values are zero
+            kept = advice.format(name=label.name, number=label.number, kept=likely)
             raise InputError(f"{told}; {label.name} is {', '.join(kinds)}: {kept}")
     raise InputError(f"{told}: keep those of one surface and load point")

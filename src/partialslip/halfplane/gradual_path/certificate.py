@@ -105,13 +105,13 @@ class _Panels:
         self._low, self._high = cuts[:-1][wide, None], cuts[1:][wide, None]
         half = np.arange(-_REACH, _REACH, _STEP / 2)
         self._count = len(half) // 2
-        near, off, weights = self._at(half[0 : 2 * self._count : 2])
+        near, off, weights = self._quadrature_points(half[0 : 2 * self._count : 2])
         self._nodes, self._near, self._off, self._weights = near + off, near, off, weights
-        self._origin, self._offset, self._shares = self._at(half[1 : 2 * self._count : 2])
+        self._origin, self._offset, self._shares = self._quadrature_points(half[1 : 2 * self._count : 2])
         self.x: Array = self._origin + self._offset
         self.judged: Mask = np.abs(self._offset) > _NEAR
 
-    def _at(self, t: Array) -> tuple[Array, Array, Array]:
+    def _quadrature_points(self, t: Array) -> tuple[Array, Array, Array]:
         """Nearest end of the panel, distance from it, and weight of the points at ``t``."""
         low, high, width = self._low, self._high, self._high - self._low
         share, rest = 1 / (1 + np.exp(-t)), 1 / (1 + np.exp(t))

@@ -59,7 +59,7 @@ class Drift:
     def progress(self, tau: float) -> float:
         """lambda from the beginning of the drift to the travel ``tau``."""
         while self._ends[len(self._densities)] < tau:
-            self._solve()
+            self._solve_panel()
         number = max(int(np.searchsorted(self._ends, tau)) - 1, 0)
         if not self._densities:
             return 0.0
@@ -72,7 +72,7 @@ class Drift:
         from scipy.optimize import brentq  # takes long to import
 
         while self._progress[-1] < progress and self._ends[len(self._densities)] < most:
-            self._solve()
+            self._solve_panel()
         number = max(int(np.searchsorted(self._progress, progress)) - 1, 0)
         low, high = self._ends[number], min(self._ends[number + 1], most)
         if progress <= 0:
@@ -103,7 +103,7 @@ class Drift:
             result[here] += np.einsum("ki,ki->k", weights[which], np.sqrt(left / right))
         return self._tension / 4 * result
 
-    def _solve(self) -> None:
+    def _solve_panel(self) -> None:
         """Find h on the next panel."""
         number = len(self._densities)
         low, high = self._ends[number : number + 2]

@@ -119,7 +119,7 @@ class HalfCycle:
         return self.phases[-1].last
 
     def at(self, progress: float) -> Stage:
-        """Stage at a ``progress`` from 0 to 1."""
+        """Stage (stick zone and q) of the half cycle at lambda = ``progress``, from 0 to 1."""
         phase = next((each for each in self.phases if progress < each.last.progress), None)
         return phase.at(progress) if phase else self.last
 
@@ -204,7 +204,7 @@ def steady(loads: Loads, shape: Shape, parts: bool = True) -> HalfCycle:
     Parameters
     ----------
     loads : Loads
-        Loads under which the stick zone drifts: slip turns round on the way.
+        Loads under which the stick zone drifts: slip reverses on the way.
     shape : Shape
         Pressure.
     parts : bool
@@ -227,9 +227,9 @@ def steady(loads: Loads, shape: Shape, parts: bool = True) -> HalfCycle:
     return _repeated(found, parts=True) if parts else found
 
 
-def _moved(one: Tractions, other: Tractions) -> float:
-    """How far two states are apart: the outer ends of their stick zones, or q between these, in a part of f p0 that
-    counts as much."""
+def _state_distance(one: Tractions, other: Tractions) -> float:
+    """Distance of two states: the largest difference of the outer ends of their stick zones (in a) or of q between
+    these ends (in f p0, times ``_OF_Q``)."""
     ends = np.array([[each.parts[0].high, each.parts[-1].low] for each in (one, other)])
     low, high = ends[:, 0].max(), ends[:, 1].min()
     x = low + (high - low) * _PROBES
@@ -263,7 +263,7 @@ def _repeated(found: HalfCycle, parts: bool) -> HalfCycle:
             continue
         state, after = -found.settled, found.last.zone.centre
         change = after - middle
-        size = max(abs(change), _moved(begin, state)) if found.parted else abs(change)
+        size = max(abs(change), _state_distance(begin, state)) if found.parted else abs(change)
         settled = _SETTLED if not found.opens else _CLOSE if found.parted else _NEARLY
         rounding = least < min(size, _NEAR) and (size < _NEAR or number - nearest >= _NO_LESS)
         if size < settled or rounding:

@@ -15,14 +15,18 @@ _PATIENT = 24  # cost: steps without progress, for ways that are lost with fewer
 
 
 def opens(first: Stage, least: float) -> bool:
-    """Whether a zone inside the stick zone slips as a half cycle begins at the stage ``first``; ``least`` is c*."""
+    """Whether an inner slip zone opens inside the stick zone at the beginning of a half cycle, the stage ``first``.
+
+    It opens where points at the friction bound, of abscissa ``low`` on, lie to the left of e - c*: e - c* - low >
+    ``SHUT``, with e the centre of the stick zone and c* = ``least``.
+    """
     last = first.q.parts[-1]
     return last.smooth is None and first.zone.centre - least - last.low > SHUT
 
 
 def inner_phase(loads: Loads, first: Stage, near: object = None) -> "Parted":
     """The phase in which a zone inside the stick zone slips, from ``first`` on, perhaps ``near`` a similar phase."""
-    # Why this stays, though it is two fifths of its package: of 144 random scenes slip turns round in 46, and in 23 of
+    # Why this stays, though it is two fifths of its package: of 144 random scenes slip reverses in 46, and in 23 of
     # these a zone inside slips, which moves m or n by up to 3e-2 a (by less than 1e-7 a in most). Without it the exact
     # method would refuse them, and march, which knows three to four digits, would be their reference. Of the 23, 19 are
     # solved here, in 0.3 to 7 CPU s in place of 0.05 to 0.6 s; none is a shipped scene or a benchmark problem.

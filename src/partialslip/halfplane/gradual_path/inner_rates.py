@@ -143,7 +143,7 @@ Event = tuple[str | int, float]
 class Panel(NamedTuple):
     """Ways over a span ``length`` of lambda, from ``progress`` on: ``begin`` (5,) plus ``offsets`` (5, nodes).
     ``event``: an end and its place, or "width" or "gap" and its size, at the end of the panel. ``takes``: b takes
-    points back; ``turns``: b turns round at the end."""
+    points back; ``turns``: b reverses at the end."""
 
     progress: float
     length: float

@@ -54,7 +54,7 @@ class Seen:
             taken = (x[:, None] < past.begin[B]) & past.takes & begun
             entered = np.where(taken, np.arange(taken.shape[1]), -1).max(axis=1)
         smooth = (past.stops <= until) & (np.arange(len(begun)) > entered.max())
-        smooth &= self._apart(begin, end, offsets)
+        smooth &= self._integrals_smooth(begin, end, offsets)
         if smooth.any():
             ways = ((past.begin[:, smooth] - begin[end])[:, :, None] + past.ways[:, smooth]).reshape(5, 1, -1)
             weights = past.weights[smooth].ravel()
@@ -80,7 +80,7 @@ class Seen:
                 self._add(total, slope, part, apart, panel.length * (part_of - first) * WEIGHTS, right)
         return total, slope
 
-    def _apart(self, begin: Array, end: int, offsets: Array) -> Mask:
+    def _integrals_smooth(self, begin: Array, end: int, offsets: Array) -> Mask:
         """Whether the ends of the interval stay so far from all points in each panel that integrals over it are
         smooth."""
         past, sides = self._past, [L, A] if end in (L, A) else [B, R]

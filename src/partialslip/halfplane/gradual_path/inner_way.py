@@ -56,8 +56,8 @@ _NARROW = 1e-4  # accuracy: width of an inner zone that may be closed where its 
 _HALVINGS = 12  # limit: of a panel where an event is sought
 _SHORTEST = 1e-15  # limit: panel
 _REFUSED = 24  # limit: halvings of a panel after the first, after which the way is lost
-_FARTHER = 1.05  # cost: by which a panel is longer than the one that it is like, for b to turn round in it
-# accuracy: z0 - b where b turns round; ways from there that rounding hides in the changes of q
+_FARTHER = 1.05  # cost: by which a panel is longer than the one that it is like, for b to reverse in it
+# accuracy: z0 - b where b reverses; ways from there that rounding hides in the changes of q
 _TURNED, _NEAR_TURN = 1e-9, 1e-7
 
 
@@ -116,7 +116,7 @@ class Way(Seen):
 
     @property
     def ends(self) -> Array:
-        """Ends and z0 at the end, (5,)."""
+        """Positions of the four zone ends and z0 at the last lambda reached, (5,)."""
         return self.panels[-1].end if self.panels else self.first
 
     def _follow(self) -> None:
@@ -146,7 +146,7 @@ class Way(Seen):
             if turn is not None:
                 if turn > 1e-3:
                     part = panel.length * float(panel.by.share(np.array(turn)))
-                    panel = self._solve(begin, takes, part, speeds, SINE, None, panel.cut(part, SINE))
+                    panel = self._converged_panel(begin, takes, part, speeds, SINE, None, panel.cut(part, SINE))
                     if not panel or panel.tail > _TAIL:
                         length, refused, self._refused = part / 2, refused + 1, len(self.panels)
                         if not length >= _SHORTEST or refused > _REFUSED:
@@ -188,7 +188,7 @@ class Way(Seen):
             elif event and not isinstance(event[0], str):
                 breaks = self._breaks_of(event[0], takes)
                 event = (event[0], float(breaks[np.argmin(np.abs(breaks - event[1]))])) if len(breaks) else None
-            panel = self._solve(begin, takes, length, speeds, old.by, event, self._alike(length, old.by))
+            panel = self._converged_panel(begin, takes, length, speeds, old.by, event, self._alike(length, old.by))
             if panel and self.progress + panel.length <= 1 and not self._crossing(panel) and panel.tail <= _TAIL:
                 return panel
         self._missed = len(self.panels)
@@ -215,22 +215,24 @@ class Way(Seen):
         if self._refused == len(self.panels):
             pass
         elif passing and passing[0] < 1.2 * length:
-            panel = self._solve(begin, takes, passing[0], speeds, SINE, passing[1:])
+            panel = self._converged_panel(begin, takes, passing[0], speeds, SINE, passing[1:])
         elif self.panels and fall * length > 0.3 * width and not shut * width > fall * gap:
-            panel = self._solve(begin, takes, 0.4 * width / fall, speeds, DECAY, ("width", width * np.exp(-RATE)))
+            panel = self._converged_panel(
+                begin, takes, 0.4 * width / fall, speeds, DECAY, ("width", width * np.exp(-RATE))
+            )
         elif self.panels and takes and shut * length > 0.5 * gap:
             size = self._least + max(SHUT / 2, _PART * gap)
-            panel = self._solve(begin, takes, gap / shut, speeds, SINE, ("gap", size))
+            panel = self._converged_panel(begin, takes, gap / shut, speeds, SINE, ("gap", size))
         if not panel or panel.length > rest or panel.tail > _TAIL:
             self._refused = len(self.panels)
-            panel = self._solve(begin, takes, length, speeds, SINE)
+            panel = self._converged_panel(begin, takes, length, speeds, SINE)
         for _ in range(_HALVINGS):
             crossing = self._crossing(panel) if panel else None
             if not panel or not crossing:
                 return panel
             end, place, s = crossing
             part = panel.length * float(panel.by.share(np.array(s)))
-            panel = self._solve(begin, takes, part, speeds, SINE, (end, place), panel.cut(part, SINE))
+            panel = self._converged_panel(begin, takes, part, speeds, SINE, (end, place), panel.cut(part, SINE))
         return None
 
     def _first_speeds(self) -> tuple[bool, float, Array]:
@@ -301,7 +303,7 @@ class Way(Seen):
         return min(found)[1:] + min(found)[:1] if found else None
 
     def _turn(self, panel: Panel) -> float | None:
-        """s at which b turns round: where it takes points and would move to the right, or retreats and would do so
+        """s at which the end b reverses: while it takes up points it would move to the right, or while it retreats,
         beyond z0."""
         s = np.linspace(0, 1, 401)
         at = panel.at(s)
@@ -326,12 +328,13 @@ class Way(Seen):
         return float(low)
 
     def at(self, progress: float) -> Array:
-        """Ends and z0 (5,) at ``progress``."""
+        """Positions of the four zone ends and z0 at lambda = ``progress``, (5,)."""
         return ways(self.panels, np.array([progress]))[:, 0] if self.panels else self.first
 
     @property
     def kinks(self) -> list[float]:
-        """Points at which b began to take points while q or a way was not smooth."""
+        """x of kinks of q that the end b of the inner slip zone causes: its position when it began to take up points,
+        if q or the path of an end had a kink then."""
         return [float(panel.begin[B]) for panel in self.panels if panel.takes and panel.kink]
 
     def _completed(self, begin: Array, offsets: Array, takes: bool) -> Array | None:
@@ -369,7 +372,7 @@ class Way(Seen):
                 found[B, column] = found[Z, column] = by[end] / (1 - by[B])
         return found
 
-    def _solve(
+    def _converged_panel(
         self,
         begin: Array,
         takes: bool,
@@ -382,7 +385,7 @@ class Way(Seen):
         """A panel by Newton's method, perhaps from ways that are ``like`` these (5, nodes); None if it does not
         converge. The length is unknown if there is an ``event``.
 
-        Where b has just turned round, it moves by a quarter of what the place does at which it would take points: both
+        Where b has just reversed, it moves by a quarter of what the place does at which it would take points: both
         go with the square of the time, and by this quarter what a point has seen adds up to nothing. At the beginning
         it moves by half of that: both go with the time, and no point has seen anything before.
         """
@@ -479,7 +482,7 @@ class Way(Seen):
             step = longer, moves
             length, offsets = length + step[0], offsets + step[1]
             largest, moved = np.abs(change).max(axis=1), np.abs(offsets[list(free)]).max(axis=1)
-            relative = free.index(A), free.index(L), free.index(R)  # b need not be known as well where it turns round
+            relative = free.index(A), free.index(L), free.index(R)  # b need not be known as well where it reverses
             close = (largest < 1e-15 + _RELATIVE * moved)[list(relative)].all()
             if damp == 1 and close and largest.max() < (_CLOSE if count_of_steps < 2 else _SLOW):
                 return Panel(self.progress, length, begin, offsets, by, takes, self._kink, event)

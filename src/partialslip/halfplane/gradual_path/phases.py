@@ -54,7 +54,8 @@ class Resting:
 
 
 class Retreating:
-    """Both ends of the stick zone give way, from ``first`` on, up to the ``zone`` at ``progress``."""
+    """Phase in which both ends of the stick zone move inwards: from the stage ``first`` to the ``zone`` at
+    ``progress``."""
 
     def __init__(self, loads: Loads, first: Stage, sign: int, progress: float, zone: Zone) -> None:
         self._loads, self.first, self.retreat = loads, first, Retreat(first.q, first.zone, sign)

@@ -74,7 +74,7 @@ class _Side(NamedTuple):
 
 
 class Retreat:
-    """Changes of q since a state.
+    """Changes of q by slip that grows from the ends of a stick zone, from a state on.
 
     Parameters
     ----------
@@ -93,11 +93,11 @@ class Retreat:
         self._latest: tuple[Zone | None, dict[int, _Side]] = None, {}  # zone in which changes were asked for
 
     def outside(self, side: int, x: Array) -> Array:
-        """Change at ``x`` in the slip zone on one ``side``, 1 or -1."""
+        """Change of q at ``x`` in the slip zone on one ``side``, 1 (right) or -1 (left)."""
         return self.start.less(1.0 if side > 0 else float(self.sign), x)
 
     def conditions(self, zone: Zone) -> LoadConditions:
-        """Loads of a stick ``zone``."""
+        """Changes of the loads (tension and shear) under which ``zone`` sticks, and the stiffness of its ends."""
         c = zone.half_width
         sides = {side: self._side(zone, side) for side in (1, -1)}
         tension = shear = 0.0
@@ -116,16 +116,19 @@ class Retreat:
         return LoadConditions(4 / math.pi * tension, shear, stiffness[-1], stiffness[1])
 
     def zone(self, tension: float, shear: float, guess: Zone) -> Zone | None:
-        """Stick zone under changes of the loads, by Newton's method from a ``guess``; None if there is none near.
-
-        An increment of the loads adds the adhered traction of the zone, singular at its ends, and the ends move until
-        the sum is bounded.
-        """
+        """Stick zone under the changes ``tension`` and ``shear``, by Newton's method from a ``guess``; None if it does
+        not converge."""
         return self._newton(tension, shear, guess, self._plainly) or self._newton(
             tension, shear, guess, self._past_breaks
         )
 
     def _newton(self, tension: float, shear: float, guess: Zone, step: _Step) -> Zone | None:
+        """Zone (l, r) with Q(l, r) = ``shear`` and T(l, r) = ``tension`` by Newton's method; None if it fails.
+
+        An increment of the loads adds the adhered traction of the zone, singular at its ends with the strengths
+        k = (Q - Q(l, r))/pi +- c (T - T(l, r))/4 (+ right, - left; c: half-width). The ends move by -k/(c S) (right)
+        and k/(c S) (left) until k = 0, with the stiffnesses S of :meth:`conditions`; ``step`` takes k/c and S.
+        """
         left, right = guess
         for number in range(_STEPS):
             c = (right - left) / 2
@@ -135,7 +138,7 @@ class Retreat:
             to_left = step(left, (more - pull) / c, at.left, at.right)
             if not (math.isfinite(to_left) and math.isfinite(to_right)):
                 return None
-            left, right = _moved(left, right, to_left, to_right, self.within)
+            left, right = _stepped_ends(left, right, to_left, to_right, self.within)
             at_break = step == self._past_breaks and number > _USUAL and max(abs(more), abs(pull)) < _ROUNDING
             if right - left <= 0 or max(abs(to_left), abs(to_right)) < _CLOSE or at_break:
                 break
@@ -149,8 +152,11 @@ class Retreat:
         return push / stiffness if stiffness else 0.0
 
     def _past_breaks(self, end: float, push: float, stiffness: float, other: float) -> float:
-        """The same, where the end may have no stiffness: points that were taken to the bound by the same loads in the
-        half cycle before reach it at once, and the end passes all of them, up to the next break."""
+        """Newton step of an ``end`` that may have no stiffness.
+
+        Points that the same loads took to the friction bound in the previous half cycle reach the bound again at once:
+        S = 0 up to the next break of q, and the end jumps just past this break.
+        """
         ahead = self._inner[(self._inner - end) * push > 0]
         if abs(stiffness) > _SOFT * abs(other) or not len(ahead):
             return self._plainly(end, push, stiffness, other)
@@ -184,8 +190,11 @@ class Retreat:
         return zones[-1][1]
 
     def balanced(self, half_width: float, guess: float) -> float | None:
-        """Centre of the stick zone of this ``half_width`` c at which the rate of q is not singular at the left end,
-        shear/pi = c tension/4; by Newton's method from a ``guess``, and by halving where the left end is at a break."""
+        """Centre of the stick zone of half-width c = ``half_width`` at which the rate of q is bounded at the left end:
+        shear/pi = c tension/4.
+
+        By Newton's method from a ``guess``; by bisection where the left end is at a break of q. None if it fails.
+        """
         c = half_width
 
         def newton(centre: float) -> float:
@@ -210,7 +219,8 @@ class Retreat:
         return (low + high) / 2
 
     def bracketed(self, half_width: float) -> float | None:
-        """As :meth:`balanced`, between the farthest centres; None if both push the left end the same way."""
+        """Centre as for :meth:`balanced`, by bracketing over all centres in the stick zone; None without a change of
+        sign."""
         from scipy.optimize import brentq  # takes long to import
 
         def excess(centre: float) -> float:
@@ -223,7 +233,7 @@ class Retreat:
         return float(brentq(excess, low, high, xtol=1e-15))
 
     def inside(self, zone: Zone, from_left: Array, from_right: Array) -> Array:
-        """Change in the stick ``zone`` at distances from its ends."""
+        """Change of q in the stick ``zone``, at the distances ``from_left`` and ``from_right`` from its ends."""
         if zone != self._latest[0]:
             self._latest = zone, {side: self._side(zone, side) for side in (1, -1)}
         to = {1: np.sqrt(from_right), -1: np.sqrt(from_left)}
@@ -260,7 +270,7 @@ def _tangent(gap: float, c: float) -> float:
     return math.sqrt(gap / (gap + 2 * c))
 
 
-def _moved(left: float, right: float, to_left: float, to_right: float, within: Zone) -> tuple[float, float]:
+def _stepped_ends(left: float, right: float, to_left: float, to_right: float, within: Zone) -> tuple[float, float]:
     """Ends after a step, kept within a zone and apart."""
     gone, lost = left - within.left, within.right - right  # widths of new slip: each changes by a limited factor
     to_left = min(max(to_left, -_FARTHEST * gone), _MOST * gone)

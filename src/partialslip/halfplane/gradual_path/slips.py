@@ -57,7 +57,7 @@ def slips(way: HalfCycle) -> Worn:
     pressure, count = way.start.shape.pressure(points), len(rules[0][0])
     net, worn = np.zeros(len(points)), np.zeros(len(points))
     for first, last in itertools.pairwise(along):
-        slip = _slip(way, first, last, points)
+        slip = _slip_between_stages(way, first, last, points)
         net += slip
         worn += pressure * np.abs(slip)
     work, other = 2 * rules[0][1] @ worn[1 : count + 1], 2 * rules[1][1] @ worn[count + 1 : -1]
@@ -92,7 +92,7 @@ def resultants(first: Stage, last: Stage) -> Resultants:
     return Resultants(float(weights @ change), float(weights @ (t * change)))
 
 
-def _slip(way: HalfCycle, first: Stage, last: Stage, x: Array) -> Array:
+def _slip_between_stages(way: HalfCycle, first: Stage, last: Stage, x: Array) -> Array:
     """Slip at ``x`` (k,) from stage to stage."""
     found = _mismatch(way, first, last, np.append(x, _sticks(first, last)))
     sticks = np.any([(x >= low) & (x <= high) for low, high in lasting(first, last)], axis=0)

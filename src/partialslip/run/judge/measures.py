@@ -164,7 +164,7 @@ _Values = tuple[str, str, float | None, float | None, float | None]
 def _measured(result: Result, reference: Result, pair: Pair, scene: Scene, stresses: bool) -> Iterator[_Values]:
     """Yield (quantity, scale, reference value, value, error)."""
     a, p0, f = reference.a, reference.p0, scene.friction.f
-    yield _apart("a", "a", 1.0, result.a / a)
+    yield _difference("a", "a", 1.0, result.a / a)
     yield from _contact_ends(result, reference)
     yield from _stick_ends(result, reference)
     of, to = result.traction, reference.traction
@@ -172,27 +172,29 @@ def _measured(result: Result, reference: Result, pair: Pair, scene: Scene, stres
     errors, sums = pair.errors(f), _integrals(of, to, pair, (*pressures, "q"))
     applied = dict(zip(("p_1", "p"), scene.end_pressing, strict=True))
     for key in pressures:
-        yield _apart(key.replace("p", "P"), "P", applied[key].P / scene.P, sums[key] / scene.P)
+        yield _difference(key.replace("p", "P"), "P", applied[key].P / scene.P, sums[key] / scene.P)
         yield key, NORM, None, None, errors[key]
     known, found = ({}, {}) if scene.even else (integrals(to, pressures, 1), _integrals(of, to, pair, pressures, 1))
     for key, M in found.items():
         given = applied[key].M
         true = known[key] if given is None else given
-        yield _apart(key.replace("p", "M"), "P a", *(each / (scene.P * a) for each in (true, M)))
-    yield _apart("p_max", "p0", to.p_max / p0, of.p_max / p0)
+        yield _difference(key.replace("p", "M"), "P a", *(each / (scene.P * a) for each in (true, M)))
+    yield _difference("p_max", "p0", to.p_max / p0, of.p_max / p0)
     if of.observed and (pull := float(of.p.min())) < 0:  # a contact does not pull
-        yield _apart("p_least", "p0", min(float(to.p.min()), 0.0) / p0, pull / p0)
+        yield _difference("p_least", "p0", min(float(to.p.min()), 0.0) / p0, pull / p0)
     limit = f * scene.P
-    yield _apart("dQ", "2 f P", *((half / limit if limit else math.nan) for half in (scene.load.dQ / 2, sums["q"])))
+    yield _difference(
+        "dQ", "2 f P", *((half / limit if limit else math.nan) for half in (scene.load.dQ / 2, sums["q"]))
+    )
     yield "q", NORM, None, None, errors["q"]
-    yield _apart("q_max", "f p0", *((_q_max(each) / (f * p0) if f else math.nan) for each in (to, of)))
+    yield _difference("q_max", "f p0", *((_q_max(each) / (f * p0) if f else math.nan) for each in (to, of)))
     for key in levels:
         yield key, NORM, None, None, errors[key]
     if not stresses:
         return
     if result.surface and reference.surface:
         largest, true = result.surface.largest[1], reference.surface.largest[1]
-        yield _apart("largest", "of exact", math.copysign(1.0, true), largest / abs(true))
+        yield _difference("largest", "of exact", math.copysign(1.0, true), largest / abs(true))
     for key, error in (("surface", surface_error(result, reference)), ("inside", inside_error(result, reference))):
         if error is not None:
             yield key, NORM, None, None, error
@@ -207,7 +209,7 @@ def _integrals(of: Traction, to: Traction, pair: Pair, keys: tuple[str, ...], ar
     return {key: true + off[key] for key, true in integrals(to, keys, arm).items()}
 
 
-def _apart(quantity: str, scale: str, reference: float, found: float) -> _Values:
+def _difference(quantity: str, scale: str, reference: float, found: float) -> _Values:
     return quantity, scale, reference, found, abs(found - reference)
 
 
@@ -217,7 +219,7 @@ def _contact_ends(result: Result, reference: Result) -> Iterator[_Values]:
     for point, (found, true) in enumerate(zip(result.ends, reference.ends, strict=True), start=1):
         for side, end, exact in zip(("left", "right"), found, true, strict=True):
             if not same or point == 2:
-                yield _apart(side if same else f"{side}_{point}", "a", exact / reference.a, end / reference.a)
+                yield _difference(side if same else f"{side}_{point}", "a", exact / reference.a, end / reference.a)
 
 
 def _stick_ends(result: Result, reference: Result) -> Iterator[_Values]:
@@ -310,7 +312,7 @@ def paired(traction: Traction, reference: Traction, keys: tuple[str, ...]) -> Pa
     keys = tuple(dict.fromkeys(("p", *keys)))
     own, true = (partial(fields, each, keys=keys) for each in (traction, reference))
     if traction.observed is None:
-        cells = _cells(traction, reference)
+        cells = _averaging_cells(traction, reference)
         averages = (means(of, cells, each.breaks) for of, each in ((own, traction), (true, reference)))
         return Pair(keys, (cells[1:] + cells[:-1]) / 2, np.diff(cells), *averages)
     (starts, ends), of = traction.observed.cells.T, traction.observed.of
@@ -400,7 +402,7 @@ def means(function: Callable[[Array], Array], cells: Array, breaks: Array) -> Ar
     return np.add.reduceat(pieces, first, axis=-1) / np.diff(cells)
 
 
-def _cells(traction: Traction, reference: Traction) -> Array:
+def _averaging_cells(traction: Traction, reference: Traction) -> Array:
     """Return the ends of the cells to average over, m; the cells cover the reference's contact.
 
     The cells are the method's, else the reference's, else the intervals between the method's points. If both have

@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 from partialslip.result import Result
 from partialslip.result.record import ResultRecord
-from partialslip.run.methods import METHODS
 from partialslip.scene import Scene
 from partialslip.scene.gradual import may_turn_round
 from partialslip.scene.plan import reduced
+from partialslip.tools.methods import METHODS
 
 ALL_EFFECTS = "all effects"  # name of the result in which no effect is forced off
 
@@ -43,7 +43,7 @@ def reference(scene: Scene) -> Reference:
     Similar half-planes: exact where the steady state is known exactly, march elsewhere. Where slip reverses between the
     load points the closed form, which goes there in one step, does not hold; exact then follows gradual loads. Where it
     cannot, or where the pressure varies, neither exact nor march is a reference for m, n and the shear. Finite bodies
-    and unlike materials: fem.
+    and dissimilar materials: fem.
     """
     if scene.finite or not scene.material.alike:
         return Reference("fem")
@@ -65,7 +65,7 @@ def reference_among(scene: Scene, results: Mapping[str, Result] | Mapping[str, R
     """Return the name of the reference among the ``results`` of ``scene`` by method; None without results.
 
     The reference is the result with all effects, else that of :func:`reference`, else the first of exact, march, fem
-    and equivalent; of these a result that tells its errors goes before one that does not. For finite and for unlike
+    and equivalent; of these a result that tells its errors goes before one that does not. For finite and for dissimilar
     bodies, where nothing is judged, it is the first: the errors are what half-planes leave out.
     """
     if ALL_EFFECTS in results:

@@ -130,8 +130,8 @@ def judged(error: float, bar: float, unsure: float = 0.0) -> Outcome:
 
 
 def read_to(quantity: str, result: Result | ResultRecord) -> float:
-    """Return what a table tells of a length to, in a: the error estimate of reading it. 0 for results that are not read
-    from a table, and for quantities that are compared like with like."""
+    """Return the error estimate of reading a length from a table, in a; 0 for results not read from a table and for
+    quantities that are compared like with like."""
     key = base(quantity)
     if READ not in result.settings or key not in result.estimate:
         return 0.0
@@ -334,7 +334,7 @@ def estimate_verdicts(verdicts: Iterable[Verdict], reference: Result) -> Iterato
 
 @dataclass(frozen=True)
 class Conclusion:
-    """What verdicts amount to.
+    """Outcome of several verdicts.
 
     Parameters
     ----------
@@ -386,10 +386,10 @@ def headline(verdicts: Iterable[Verdict]) -> tuple[str, ...]:
 def conclude(
     verdicts: Iterable[Verdict], conditions: Iterable[Verdict] = (), waived: Collection[str] = ()
 ) -> Conclusion:
-    """Return what ``verdicts`` on one comparison and the ``conditions`` of its result amount to.
+    """Return the outcome of the ``verdicts`` on one comparison and of the ``conditions`` of its result.
 
-    MISSED if any of them is missed; PASSED if every headline quantity was judged; NOT_JUDGED otherwise. Passed
-    ``conditions`` alone do not pass a result.
+    MISSED if any is missed; PASSED if every headline quantity was judged; otherwise NOT_JUDGED. Passed ``conditions``
+    alone do not pass a result.
 
     Parameters
     ----------
@@ -410,7 +410,7 @@ def conclude(
 
 
 def together(conclusions: Iterable[Conclusion]) -> Conclusion:
-    """Return what several ``conclusions`` amount to: PASSED only if all that had bars passed, and one had."""
+    """Return the outcome of several ``conclusions``: PASSED only if all with bars passed, and at least one had bars."""
     conclusions = tuple(conclusions)
     missed = tuple(text for each in conclusions for text in each.missed)
     unjudged = tuple(dict.fromkeys(key for each in conclusions for key in each.unjudged))
@@ -420,7 +420,7 @@ def together(conclusions: Iterable[Conclusion]) -> Conclusion:
 
 
 def of_run(compared: Mapping[str, Conclusion], missed: Iterable[str], hold: Mapping[str, bool]) -> Conclusion:
-    """Return what a run of several methods amounts to.
+    """Return the outcome of a run of several methods.
 
     Parameters
     ----------

@@ -99,7 +99,7 @@ def sweep(
         raise InputError(f"cores = {cores}: must be a whole number >= 1")
     if not 0 <= check <= 1:
         raise InputError(f"check = {check}: must be from 0 to 1")
-    points = _points(over)
+    points = _grid_points(over)
     if methods is not None:
         methods = chosen_methods(scene, methods)
     if ledger is not None and not isinstance(ledger, (str, os.PathLike)):
@@ -115,7 +115,7 @@ def sweep(
     with _told(progress, scene.name) as tell, workers(cluster, cores) as executor:
         work_through(sorted(tasks, key=_geometry), known, executor, tell)
     rows = [
-        _row(point, known.read(task.key, Solved), first)
+        _point_row(point, known.read(task.key, Solved), first)
         for point, task, first in zip(points, tasks, leading, strict=True)
     ]
     keys = dict.fromkeys(key for row in rows for key in row)
@@ -123,13 +123,13 @@ def sweep(
     return frame({key: [row.get(key) for row in rows] for key in (*(key for key in keys if key not in last), *last)})
 
 
-def _points(over: Mapping[str, Iterable[Any]] | Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def _grid_points(over: Mapping[str, Iterable[Any]] | Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Values by key of each point."""
     if not isinstance(over, Mapping):
         points = list(over) if isinstance(over, Iterable) else []
         if not points or not all(isinstance(point, Mapping) for point in points):
             raise InputError("over: must be values by key, or a list of points, each with a value by key")
-        return [{key: _plain(value) for key, value in point.items()} for point in points]
+        return [{key: _python_value(value) for key, value in point.items()} for point in points]
     values = {key: _values(key, given) for key, given in over.items()}
     return [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
 
@@ -137,12 +137,12 @@ def _points(over: Mapping[str, Iterable[Any]] | Sequence[Mapping[str, Any]]) -> 
 def _values(key: str, given: Any) -> list[Any]:
     if isinstance(given, (str, Mapping)) or not np.iterable(given):
         raise InputError(f"over: {key} = {given!r}: must be a list of values")
-    if not (values := [_plain(value) for value in given]):
+    if not (values := [_python_value(value) for value in given]):
         raise InputError(f"over: {key}: must be a list of at least one value")
     return values
 
 
-def _plain(value: Any) -> Any:
+def _python_value(value: Any) -> Any:
     """A value as Python's number, string or tuple."""
     value = value.tolist() if hasattr(value, "tolist") else value
     return tuple(value) if isinstance(value, list) else value
@@ -167,7 +167,7 @@ def _geometry(task: Task) -> str:
     return str((*geometry, scene.fem, scene.pressing) if "fem" in methods else geometry)
 
 
-def _row(point: Mapping[str, Any], solved: Solved, first: str | None = None) -> dict[str, Any]:
+def _point_row(point: Mapping[str, Any], solved: Solved, first: str | None = None) -> dict[str, Any]:
     """Columns of a point; those of fem do not precede those of the ``first`` method."""
     if solved.run is None:
         return {**point, **dict.fromkeys(("method", *_VALUES, "cpu_s", "outcome")), "failure": solved.error}

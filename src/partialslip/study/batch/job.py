@@ -111,10 +111,10 @@ class Solved(msgspec.Struct, frozen=True, kw_only=True):
 
 def solve_job(job: Job, keep: "Kept | None" = None) -> Solved:
     """Solve ``job``; ``keep`` as in :func:`partialslip.run`."""
-    return _solved(job, keep)[0]
+    return _job_outcome(job, keep)[0]
 
 
-def _solved(job: Job, keep: "Kept | None" = None) -> tuple[Solved, Run | None]:
+def _job_outcome(job: Job, keep: "Kept | None" = None) -> tuple[Solved, Run | None]:
     try:
         outcome = run(job.scene, job.methods, subsurface=job.stresses, keep=keep)
         found = outcome.results.items() if job.stresses else ()
@@ -172,20 +172,20 @@ def _costs(outcome: Run) -> ProcessCost:
     return ProcessCost(cpu, report, peak)
 
 
-def _known(seconds: Sequence[float]) -> bool:
+def _timing_settled(seconds: Sequence[float]) -> bool:
     """Whether the two smallest CPU ``seconds`` agree, or the first ones are so many that imports do not count."""
     least, *others = sorted(seconds)
     return least > _LONG or bool(others and others[0] <= (1 + _AGREE) * least)
 
 
-def _apart(repeats: int) -> None:
+def _solve_from_stdin(repeats: int) -> None:
     """Read a job as JSON from stdin, solve it, and write the outcome as JSON to stdout."""
     job = msgspec.json.decode(sys.stdin.buffer.read(), type=Job)
-    found, outcome = _solved(job)
+    found, outcome = _job_outcome(job)
     if outcome:
         costs, method = _costs(outcome), job.methods[-1]
         outcomes, began = [outcome], time.process_time()
-        while len(outcomes) < repeats and not _known([each[method].cost.cpu_s for each in outcomes]):
+        while len(outcomes) < repeats and not _timing_settled([each[method].cost.cpu_s for each in outcomes]):
             outcomes.append(run(job.scene, job.methods, subsurface=job.stresses))
         again = time.process_time() - began + sum(each[method].cost.meshing_cpu_s for each in outcomes[1:])
         cheapest = min(outcomes, key=lambda each: each[method].cost.cpu_s)
@@ -195,4 +195,4 @@ def _apart(repeats: int) -> None:
 
 
 if __name__ == "__main__":
-    _apart(int(sys.argv[1]))
+    _solve_from_stdin(int(sys.argv[1]))

@@ -168,7 +168,7 @@ def _is_torn(line: bytes) -> bool:
 def _sealed(entry: str) -> bytes:
     """Append a checksum of the text to ``entry``, a JSON object, as the last key."""
     text = entry.encode()
-    return text[:-1] + _SEAL + _sum(text) + b'"}'
+    return text[:-1] + _SEAL + _line_checksum(text) + b'"}'
 
 
 def _unsealed(line: bytes) -> dict[str, Any]:
@@ -176,12 +176,12 @@ def _unsealed(line: bytes) -> dict[str, Any]:
     line is no strict JSON."""
     text, seal, end = line.rpartition(_SEAL)
     text += b"}"
-    if not seal or end != _sum(text) + b'"}':
+    if not seal or end != _line_checksum(text) + b'"}':
         raise ValueError
     return decoded(text, dict, "entry")
 
 
-def _sum(text: bytes) -> bytes:
+def _line_checksum(text: bytes) -> bytes:
     return hashlib.sha256(text).hexdigest()[:16].encode()
 
 

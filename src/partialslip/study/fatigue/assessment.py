@@ -117,7 +117,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class Rating:
-    """What a criterion finds.
+    """Values of a criterion with their places and errors.
 
     Parameters
     ----------

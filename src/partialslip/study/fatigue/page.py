@@ -105,13 +105,16 @@ def criteria_sections(run: Run) -> list[Section]:
     line = f"By {whose(run, result.method)}.{averages} partialslip fatigue has the critical planes and figures."
     exponent, unit = unit_of_places(run.scene, result.a)
     rows = [
-        (*_row(run, result, key, spot, found.get(key.partition(".")[0], spot).value), f"{spot.x / 10.0**exponent:.4g}")
+        (
+            *_hot_spot_row(run, result, key, spot, found.get(key.partition(".")[0], spot).value),
+            f"{spot.x / 10.0**exponent:.4g}",
+        )
         for key, spot in found.items()
     ]
     return [Section(_TITLE, [line], headings=(*_HEADINGS, f"x, {unit}"), rows=rows, words=(1,))]
 
 
-def _row(run: Run, result: Result, key: str, spot: HotSpot, largest: float) -> tuple[str, ...]:
+def _hot_spot_row(run: Run, result: Result, key: str, spot: HotSpot, largest: float) -> tuple[str, ...]:
     """Cells of a hot spot but for its place in a unit of length, in the unit of the ``largest`` of its criterion, which
     stands at the surface."""
     name, _, over = key.partition(".")

@@ -44,7 +44,7 @@ def live_page(scene: Scene) -> str:
         If the profile is not ``hertz``, the bodies' materials differ, an effect is forced on or off, displacements
         drive the bodies, there is no friction, P varies or has a moment, or the loads are out of phase.
     """
-    _check(scene)
+    _require_solvable(scene)
     return (
         template("partialslip.study.live", "live.html").render(
             data=_data(scene),
@@ -56,7 +56,7 @@ def live_page(scene: Scene) -> str:
     )
 
 
-def _check(scene: Scene) -> None:
+def _require_solvable(scene: Scene) -> None:
     """Raise InputError if the page does not solve ``scene``."""
     if not isinstance(scene.profile, Hertz):
         kind = type(scene.profile).__struct_config__.tag
@@ -99,13 +99,13 @@ def _data(scene: Scene) -> dict[str, Any]:
         "dsigma": load.dsigma,
         "Q_mean": load.Q_mean,
         "units": {of: [units.label(of), units.size(of)] for of in ("m", "Pa", "N/m")} if units != SI else {},
-        "table": _table(),
-        "map": _lines(max(_TOP, math.ceil(1.2 * sf)) if sf <= _HIGHEST else _TOP),
+        "table": _gradual_table(),
+        "map": _map_lines(max(_TOP, math.ceil(1.2 * sf)) if sf <= _HIGHEST else _TOP),
     }
 
 
 @functools.cache
-def _table() -> dict[str, Any]:
+def _gradual_table() -> dict[str, Any]:
     """Return the table of gradual zones in the page's accuracy: coefficients of series are rounded, and left out beyond
     the last that is not zero."""
 
@@ -131,15 +131,22 @@ def _trimmed(values: list[Any]) -> list[Any]:
 
 
 @functools.cache
-def _lines(top: float) -> dict[str, Any]:
+def _map_lines(top: float) -> dict[str, Any]:
     """Return lines of equal m and n up to sf = ``top``, with places of the labels, and the border between the regimes;
     in (Qf, sf)."""
     found = stick_map()
-    border, lines = _points(found.border, top), [_points(line, top) for line in (*found.m_lines, *found.n_lines)]
+    border, lines = (
+        _line_points(found.border, top),
+        [_line_points(line, top) for line in (*found.m_lines, *found.n_lines)],
+    )
     paper = np.array([_SHAPE, 1 / top])
     avoided = np.vstack([border, _NAMES * (1, top)])
     labelled = [
-        {"value": line.at, "points": _listed(points), "label": None if place is None else _listed(place[0] / paper)}
+        {
+            "value": line.at,
+            "points": _rounded_list(points),
+            "label": None if place is None else _rounded_list(place[0] / paper),
+        }
         for line, points, place in zip(
             (*found.m_lines, *found.n_lines),
             lines,
@@ -148,14 +155,14 @@ def _lines(top: float) -> dict[str, Any]:
         )
     ]
     count = len(found.m_lines)
-    return {"m": labelled[:count], "n": labelled[count:], "border": _listed(border), "top": float(top)}
+    return {"m": labelled[:count], "n": labelled[count:], "border": _rounded_list(border), "top": float(top)}
 
 
-def _points(line: MapLine, top: float) -> Array:
+def _line_points(line: MapLine, top: float) -> Array:
     """Return the points (k, 2) of a line on the map and slightly beyond."""
     on = (line.Qf <= 1) & (line.sf <= 1.5 * top)
     return np.column_stack([line.Qf[on], line.sf[on]])
 
 
-def _listed(points: Array) -> list[Any]:
+def _rounded_list(points: Array) -> list[Any]:
     return points.round(_ROUNDED).tolist()

@@ -151,11 +151,11 @@ def _all_lines(axes: "Axes", data: VaryingMap) -> Iterator[tuple[str, float, Arr
         ends.append(("n", data.n, N_LEVELS))
     for of, values, levels in ends:
         for at in levels:
-            for line in _lines(axes, data, values, at):
+            for line in _contour_lines(axes, data, values, at):
                 yield of, at, line
 
 
-def _lines(axes: "Axes", data: VaryingMap, values: Array, at: float) -> Iterator[Array]:
+def _contour_lines(axes: "Axes", data: VaryingMap, values: Array, at: float) -> Iterator[Array]:
     """Lines (points, 2) over dP and dQ where ``values`` equal ``at`` and both ends slip."""
     from scipy.interpolate import RegularGridInterpolator  # takes long to import
 

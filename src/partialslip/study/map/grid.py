@@ -1,6 +1,6 @@
 """Data of the stick-zone map: stick zones over a grid of loads, lengths as fractions of a.
 
-The zones are those of gradual loads where slip does not turn round and, for Hertz, where the table of gradual zones has
+The zones are those of gradual loads where slip does not reverse and, for Hertz, where the table of gradual zones has
 them. Elsewhere they are those of a single step, and marked.
 
 Loads are scaled by the friction: Qf = dQ/(2 f P) and sf = dsigma/(f p0) with p0 = 2 P/(pi a). The map shows positive
@@ -44,7 +44,7 @@ _ALONG = 101  # display: points per line
 
 class LoadedZones(NamedTuple):
     """Loads ``Qf`` and ``sf`` and their stick zones ``zone``, as fractions of a: arrays of one shape. ``turned``: where
-    the zones are those of a single step, and do not hold, as slip turns round between the load points."""
+    the zones are those of a single step, and do not hold, as slip reverses between the load points."""
 
     Qf: Array
     sf: Array
@@ -142,15 +142,15 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
         given = scene.load.shown("P", scene.units)
         raise InputError(f"load.P = {given}: must be one number for a map over dQ and dsigma")
     pressed = contact(scene)
-    point, missing = _point(scene, pressed)
+    point, missing = _map_point(scene, pressed)
     top = max(_TOP, math.ceil(1.2 * point.place[1])) if point else _TOP
     data = _mapped(pressed.shape, top, progress)
     return replace(data, scene=scene, pressed=pressed, point=point, missing=missing)
 
 
 def require_stick_zones(scene: Scene) -> None:
-    """Raise InputError if ``scene`` has unlike bodies, displacements in place of Q, no friction, or a coefficient that
-    varies along x."""
+    """Raise InputError if ``scene`` has dissimilar bodies, displacements in place of Q, no friction, or a coefficient
+    that varies along x."""
     if not scene.material.alike:
         raise InputError("material.upper, material.lower: the bodies differ; must be of one material for a map")
     scene.load.require_forces(scene.units)
@@ -199,7 +199,7 @@ def _lines_of(shape: Shape, fine: LoadedZones | None = None) -> tuple[list[MapLi
     """Return the lines of equal m and of equal n."""
     m_lines = [line for m in M_LEVELS for line in _m_lines(m, shape)]
     n_lines = [_n_line(n, shape) for n in N_LEVELS]
-    return _lines(m_lines, "m", shape, fine), _lines(n_lines, "n", shape, fine)
+    return _gradual_lines(m_lines, "m", shape, fine), _gradual_lines(n_lines, "n", shape, fine)
 
 
 @functools.cache
@@ -209,7 +209,7 @@ def _hertz_lines() -> tuple[list[MapLine], list[MapLine]]:
     return _lines_of(HertzShape(), _zones(Qf, sf, HertzShape()))
 
 
-def _lines(once: list[MapLine], of: str, shape: Shape, fine: LoadedZones | None) -> list[MapLine]:
+def _gradual_lines(once: list[MapLine], of: str, shape: Shape, fine: LoadedZones | None) -> list[MapLine]:
     """Return lines of equal m or n under gradual loads: the lines of a single step, ``once``, and in place of their
     parts where the table of gradual zones has others, lines through the ``fine`` grid of gradual zones, if any."""
     if fine is None:
@@ -249,7 +249,7 @@ def _gap(join: tuple[MapLine, int, int], points: Array) -> float:
 
 
 def _tabled(line: MapLine, shape: Shape) -> Mask:
-    """Whether slip turns round at the points of a ``line``, and the table of gradual zones has them."""
+    """Whether slip reverses at the points of a ``line``, and the table of gradual zones has them."""
     on = (line.Qf >= 0) & (line.Qf < 1) & (line.sf >= 0)
     Qf, sf = np.where(on, line.Qf, 0), np.where(on, line.sf, 0)
     zone = stick_zones(Qf, sf, shape)
@@ -288,7 +288,7 @@ def _zones(Qf: Array, sf: Array, shape: Shape, progress: Callable[[float], None]
     return LoadedZones(Qf, sf, zone, turned)
 
 
-def _point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
+def _map_point(scene: Scene, pressed: Contact) -> tuple[Point | None, str]:
     """Return the scene's point, or None and the reason."""
     load, f = scene.load, scene.friction.f
     if not load.in_phase:

@@ -127,7 +127,7 @@ def varying_map(scene: Scene, progress: Callable[[str], None] = lambda _: None) 
     regime[np.maximum(m, n) > smaller + _ROUNDING] = "part of the cycle"
     regime[dQ <= _sticks(ratio, dP)] = "no slip"
     regime[dQ >= _slides(scene, dP)] = "sliding"
-    return VaryingMap(scene, pressed, dP, dQ, smaller, m, n, regime, _point(scene))
+    return VaryingMap(scene, pressed, dP, dQ, smaller, m, n, regime, _varying_map_point(scene))
 
 
 def _ratio(scene: Scene, pressed: Contact) -> float:
@@ -148,7 +148,7 @@ def _slides(scene: Scene, dP: Array) -> Array:
     return result
 
 
-def _point(scene: Scene) -> Point | None:
+def _varying_map_point(scene: Scene) -> Point | None:
     if scene.slides:
         return None
     load, (one, other) = scene.load, (P for P, _ in scene.end_pressing)

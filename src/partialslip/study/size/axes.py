@@ -96,7 +96,7 @@ class Axis:
 
     @property
     def beyond(self) -> "Axis":
-        """The axis at its :attr:`limit` alone."""
+        """Axis with the single value :attr:`limit`, which stands for an infinite size."""
         return replace(self, values=(self.limit,))
 
     def label(self, units: Units) -> str:

@@ -18,7 +18,7 @@ FEM, HALF_PLANE, EQUIVALENT = "fem", "half-plane", "equivalent"
 
 def half_plane_method(scene: Scene) -> str:
     """Return the method that solves the half-planes of ``scene``: exact, or march where exact has no solution: for
-    unlike materials, and loads out of phase."""
+    dissimilar materials, and loads out of phase."""
     return "exact" if scene.material.alike and scene.load.in_phase else "march"
 
 
@@ -66,8 +66,8 @@ def solve_sized(job: Job, keep: "Kept | None" = None) -> Sized:
 
 
 def _with_stresses(scene: Scene, found: Result) -> Result:
-    """Return the half-planes of ``scene`` with stresses: by march where the exact method has ``found`` none. Of unlike
-    materials no method knows them."""
+    """Return the half-planes of ``scene`` with stresses: by march where the exact method has ``found`` none. Of
+    dissimilar materials no method knows them."""
     if found.method == "march" or scene.slides or (found.stress_at and not found.path_dependent):
         return found
     return run(scene, "march", subsurface=True)["march"]

@@ -132,8 +132,8 @@ class Kind(StrEnum):
 
 
 class Floor(NamedTuple):
-    """What remains of a difference however large the varied sizes are, solved at a size that stands for an infinite
-    one: its ``value``, with the sign of the difference, the error of the ``mesh`` and what is ``falling`` yet."""
+    """Limit of a difference for infinite sizes, solved at a large size: ``value`` with its sign, error of the ``mesh``,
+    and the part still ``falling``."""
 
     value: float
     mesh: float
@@ -181,7 +181,7 @@ class Law:
     @property
     def bounds(self) -> tuple[float, float]:
         """95 % confidence interval of k."""
-        beside = self.scatter / math.sqrt(self._spread)
+        beside = self.scatter / math.sqrt(self._log_spread)
         return self.k - beside, self.k + beside
 
     @property
@@ -190,7 +190,7 @@ class Law:
         return self.bounds[0] > 0
 
     @property
-    def _spread(self) -> float:
+    def _log_spread(self) -> float:
         """Sum of squared distances of the logarithms of the sizes from their mean."""
         logs = np.log(self.sizes)
         return float(np.sum((logs - logs.mean()) ** 2))
@@ -207,7 +207,7 @@ class Law:
             return (math.inf,) * 3
         middle = float(np.log(self.sizes).mean())
         rise = math.log(left) - math.log(self.C) + self.k * middle
-        slope = self.scatter**2 / self._spread
+        slope = self.scatter**2 / self._log_spread
         steep = self.k**2 - slope
         beside = math.sqrt(slope * rise**2 + self.scatter**2 / len(self.sizes) * steep)
         low, high = (math.exp(middle + (-self.k * rise + way * beside) / steep) for way in (-1, 1))
@@ -325,9 +325,11 @@ def trend(sizes: Sizes, quantity: str) -> Trend:
 
 
 def _floor(size: Array, change: Array, mesh: Array, known: npt.NDArray[np.bool_], limit: float) -> Floor | None:
-    """What remains at an infinite size: the change at ``limit``. From the largest size to there, the differences of
-    bodies fall with 1/size at least (docs/sizes/half-plane.md). None where it exceeds those of all sizes by far: of a
-    body that turns slender, which bends, the difference grows."""
+    """Limit of the change at infinite size: the change at ``limit``.
+
+    From the largest size to ``limit`` differences of bodies fall with 1/size at least (docs/sizes/half-plane.md). None
+    where the change exceeds those of all sizes by far: a slender body bends, and its difference grows.
+    """
     at, last = np.flatnonzero(known & (size >= limit)), np.flatnonzero(known & (size < limit))
     if not (at.size and last.size):
         return None

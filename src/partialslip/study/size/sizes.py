@@ -84,7 +84,7 @@ def measure(
         asked += [
             case
             for case in (*cases(scene, axes, (accuracy,)), *_at_limit(scene, axes, (accuracy,))[0])
-            if _point(axes, case) in unclear
+            if _grid_point(axes, case) in unclear
         ]
         work_through([case.task._replace(do=solve) for case in asked], ledger, executor, progress)
     return [*(ledger.read(case.key, Sized) for case in asked), *outside]
@@ -103,10 +103,10 @@ def _at_limit(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float]) -
 
 def at_limit(axes: Sequence[Axis], of: Job | Sized) -> bool:
     """Return whether a job or entry stands for an infinite size, which nobody asked for."""
-    return _point(axes, of) == (axes[0].limit,)
+    return _grid_point(axes, of) == (axes[0].limit,)
 
 
-def _point(axes: Sequence[Axis], of: Job | Sized) -> tuple[float, ...]:
+def _grid_point(axes: Sequence[Axis], of: Job | Sized) -> tuple[float, ...]:
     """Return the point of the grid of ``axes`` that a job or entry belongs to."""
     return tuple(float(of.labels[each.name]) for each in axes)
 
@@ -170,7 +170,7 @@ def refused(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float,
 def _by_point(axes: Sequence[Axis], entries: Iterable[Sized]) -> dict[tuple[float, ...], list[Sized]]:
     """Return the entries by point of the grid, from the coarsest mesh to the finest, without failed cases."""
     return grouped(
-        (_point(axes, entry), entry)
+        (_grid_point(axes, entry), entry)
         for entry in sorted(entries, key=lambda entry: -float(entry.labels[ACCURACY]))
         if entry.run
     )
@@ -185,9 +185,13 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
     """
     run = meshes[-1].run
     assert run
-    found, estimate, beside = _off(meshes[-1]), _estimate(run.methods["fem"]), _half_plane_errors(run)
+    found, estimate, beside = (
+        _changes_from_half_plane(meshes[-1]),
+        _estimate(run.methods["fem"]),
+        _half_plane_errors(run),
+    )
     coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
-    rough = _off(coarser[-1]) if coarser else {}
+    rough = _changes_from_half_plane(coarser[-1]) if coarser else {}
     changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in DIFFERENCES}
     mesh = {key: float(np.fmax(estimate.get(key, math.nan), changed[key])) for key in DIFFERENCES}
     both = {key: mesh[key] + beside.get(key, 0.0) for key in DIFFERENCES}
@@ -202,7 +206,7 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
             if key in true:
                 own = spot.error if name == HALF_PLANE else _rig_error(meshes[-1])
                 off[key] = (spot.value - true[key].value) / abs(true[key].value)
-                errors[key] = _sum(own, true[key].error)
+                errors[key] = _sum_or_nan(own, true[key].error)
     return differences
 
 
@@ -214,7 +218,7 @@ def _with_mesh_errors(meshes: Sequence[Sized]) -> dict[str, HotSpot]:
     found = {}
     for key, spot in meshes[-1].stresses.get(FEM, {}).items():
         changed = off_by(rough[key], spot) if key in rough else math.nan
-        error = float(np.fmax(_sum(spot.error), changed))
+        error = float(np.fmax(_sum_or_nan(spot.error), changed))
         found[key] = replace(spot, error=None if math.isnan(error) else error)
     return found
 
@@ -225,7 +229,7 @@ def _rig_error(entry: Sized) -> float:
     return entry.equivalent.methods["equivalent"].shares.get("rig", {}).get(SIGMA) or 0.0
 
 
-def _sum(*errors: float | None) -> float:
+def _sum_or_nan(*errors: float | None) -> float:
     """Return the sum of ``errors``; NaN if one is not known."""
     return sum(math.nan if error is None else error for error in errors)
 
@@ -252,7 +256,7 @@ def _half_plane_errors(run: Record) -> dict[str, float]:
     return {key: error_of(result, key, name) for key in DIFFERENCES}
 
 
-def _off(entry: Sized) -> dict[str, float]:
+def _changes_from_half_plane(entry: Sized) -> dict[str, float]:
     """Return the change from the half-plane at one point on one mesh, by quantity."""
     assert entry.run
     fem, plain, errors = entry.run.methods["fem"], _half_plane(entry.run), entry.run.comparison["fem"].errors
@@ -278,10 +282,10 @@ def _left(entry: Sized) -> tuple[dict[str, float], dict[str, float]]:
     shares = entry.equivalent.methods["equivalent"].shares.get("rig", {})
     left = {key: errors.get(key) for key in DIFFERENCES}
     rig = {key: shares.get("p" if key == "p_max" else key) for key in DIFFERENCES}
-    return _known(left), _known(rig)
+    return _magnitudes(left), _magnitudes(rig)
 
 
-def _known(values: Mapping[str, float | None]) -> dict[str, float]:
+def _magnitudes(values: Mapping[str, float | None]) -> dict[str, float]:
     return {key: abs(value) for key, value in values.items() if value is not None}
 
 
@@ -318,7 +322,7 @@ def case_table(axes: Sequence[Axis], entries: Iterable[Sized], units: Units) -> 
         if entry.run is None:
             rows.append([*row, *[""] * (len(head) - len(row) - 2), entry.error, ""])
         else:
-            fem, differences = entry.run.methods["fem"], (_off(entry), _left(entry)[0])
+            fem, differences = entry.run.methods["fem"], (_changes_from_half_plane(entry), _left(entry)[0])
             values = [(getattr(fem, key), of) for key, of in figures.items()]
             row += ["" if value is None else units.from_si(value, of) for value, of in values]
             row.append(fem.regime)

@@ -90,7 +90,7 @@ def largest_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
                     key,
                     unit[1],
                     row_text(study.models[0], size),
-                    *(cell for spot in spots for cell in _cells(spot, unit[0], length[0])),
+                    *(cell for spot in spots for cell in _spot_cells(spot, unit[0], length[0])),
                 )
             )
     heads = [head for name in known for head in (name, f"x, {length[1]}")]
@@ -102,7 +102,7 @@ def _largest(study: SizeStudy, key: str) -> tuple[Dimension, float]:
     return spots[0].of, max(abs(spot.value) for spot in spots)
 
 
-def _cells(spot: HotSpot | None, exponent: int, length: int) -> tuple[str, str]:
+def _spot_cells(spot: HotSpot | None, exponent: int, length: int) -> tuple[str, str]:
     """Value with its error, and place."""
     if spot is None:
         return "-", ""

@@ -172,7 +172,7 @@ def laws_table(study: SizeStudy) -> tuple[tuple[str, ...], Rows]:
     """Return headings and rows of the fitted laws."""
     rows: Rows = [
         (*of, str(law.floor), f"{law.C:.3g}", f"{law.k:.2f}", "{:.2f} to {:.2f}".format(*law.bounds),
-         _listed(law.sizes))
+         _sizes_text(law.sizes))
         for *of, trend in _by_quantity(study)
         if (law := trend.law)
     ]  # fmt: skip
@@ -273,7 +273,7 @@ def row_text(model: Sizes, size: float) -> str:
     return INFINITE if size >= model.limit else size_text(size)
 
 
-def _listed(sizes: Sequence[float]) -> str:
+def _sizes_text(sizes: Sequence[float]) -> str:
     if len(sizes) <= _LISTED:
         return ", ".join(map(size_text, sizes))
     return f"{len(sizes)} from {size_text(min(sizes))} to {size_text(max(sizes))}"

@@ -33,13 +33,13 @@ def csv_text(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerows(
-        [_plain(cell) if isinstance(cell, str) else cell for cell in row] for row in itertools.chain([head], rows)
+        [_safe_cell(cell) if isinstance(cell, str) else cell for cell in row] for row in itertools.chain([head], rows)
     )
     return text.getvalue()
 
 
 @functools.lru_cache(1024)  # cost: a column repeats its text
-def _plain(cell: str) -> str:
+def _safe_cell(cell: str) -> str:
     """Return ``cell`` without control characters, and with an apostrophe if it would be a formula. Numbers in text are
     none."""
     cell = printable(cell)

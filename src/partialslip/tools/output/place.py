@@ -45,7 +45,7 @@ def _as_json(_: str, value: object) -> str:
 
 @dataclass(frozen=True)
 class Request:
-    """What a command is asked for.
+    """Request of a command: files are overwritten only by the same request.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Request:
     def changed(self) -> str:
         """Names of the settings that differ from the plain request, in words; empty if none do."""
         names = _differing(self.asked, self.plain) if self.plain is not None else []
-        return f"settings: {_some([_short(name) for name in names])}" if names else ""
+        return f"settings: {_some([_key_for_user(name) for name in names])}" if names else ""
 
 
 class Place(NamedTuple):
@@ -256,14 +256,14 @@ def _some(texts: list[str]) -> str:
 
 
 def _setting(key: str, value: object, text: Callable[[str, object], str]) -> str:
-    name = _short(key)
+    name = _key_for_user(key)
     if value is None:
         return f"no {name}"
     told = text(name, value)
     return f"{name} = {told}" if len(told) <= _LONGEST else f"other {name}"
 
 
-def _short(key: str) -> str:
+def _key_for_user(key: str) -> str:
     """Return a dotted name of a request as the user knows it."""
     return key.removeprefix("scene.").removeprefix("settings.")
 

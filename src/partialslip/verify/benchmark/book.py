@@ -132,7 +132,7 @@ def _draw_errors(axes: "Axes", errors: ErrorsByResolution) -> None:
     axes.scatter(x, rows, s=_CELL[0] ** 2, c=greys, marker=Path(corners, closed=True), lw=0)
     for column, row, size, each in zip(x, rows, sizes, grade, strict=True):
         color = "white" if each >= _DARK else "black"
-        text = axes.text(column, row, _short(size), color=color, fontsize=7, ha="center", va="center")
+        text = axes.text(column, row, _error_text(size), color=color, fontsize=7, ha="center", va="center")
         text.set_in_layout(False)  # it lies inside the axes
     for place, column in columns.items():
         axes.plot([place, column], [-1.4, -0.5], color="0.7", lw=0.6, clip_on=False)
@@ -149,7 +149,7 @@ def _columns(places: Iterable[float]) -> dict[float, float]:
     return dict(zip(known, (isotonic_regression(known - shifts).x + shifts).tolist(), strict=True))
 
 
-def _short(error: float) -> str:
+def _error_text(error: float) -> str:
     """Return an error in at most four characters: 2e-3, and "0" below 1e-9."""
     if error < 1e-9:
         return "0"
@@ -227,7 +227,7 @@ def _files(problem: Problem, checksum: str) -> dict[str, str]:
 
 
 def _given(tables: dict[str, Any]) -> dict[str, Any]:
-    """``tables`` of a scene without the keys that are no part of the problem."""
+    """``tables`` of a scene without the load keys that are not part of the problem (``_IDLE``)."""
     load = {key: value for key, value in tables["load"].items() if key not in _IDLE}
     return tables | {"load": load}
 

@@ -19,7 +19,7 @@ from partialslip.verify.benchmark.problem import Problem, Target
 from partialslip.verify.benchmark.turning import event_by_event, slip_reverses
 
 _DIGITS = 1e-9  # accuracy: uncertainty of exact solutions, in the scale of the quantity
-_FOLLOWED = 1e-6  # accuracy: uncertainty where slip turns round, unless the second way is farther off
+_FOLLOWED = 1e-6  # accuracy: uncertainty where slip reverses, unless the second way is farther off
 _ENDS = ("left_1", "right_1", "left_2", "right_2")
 _GRADUAL = "quadratures and an integral equation along the gradual path"
 _NEAR = 1e-3  # limit: another method that is farther off does not check the digits of an exact solution
@@ -77,7 +77,7 @@ def derivations(problem: Problem) -> tuple[Derivation, ...]:
 def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: None) -> tuple[dict[str, Target], str]:
     """Find the targets of ``problem``, and its regime.
 
-    The uncertainty is that of an exact solution; where slip turns round, the difference from the nearest other method;
+    The uncertainty is that of an exact solution; where slip reverses, the difference from the nearest other method;
     or the largest of the method's estimate and the differences between the methods.
 
     Parameters
@@ -88,17 +88,17 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
     """
     first, *others = derivations(problem)
     progress(f"{problem.number}: {first.words}")
-    result = _solved(problem, first)
+    result = _derived_result(problem, first)
     values = quantities(problem.scene, result, problem.places)
     checks: list[tuple[Derivation, Result, Quantities]] = []
     for way in others:
         progress(f"{problem.number}: {way.words}")
-        other = _solved(problem, way)
+        other = _derived_result(problem, way)
         checks.append((way, other, quantities(problem.scene, other, problem.places, result.a)))
     if first.method == "exact" and problem.scene.presses_anew and "slip" in values:
         extrapolated = Derivation("fem", "fem, extrapolated from 16, 64 and 256 load steps")
         progress(f"{problem.number}: {extrapolated.words}")
-        checks.append((extrapolated, result, _slip(problem, result.a)))
+        checks.append((extrapolated, result, _slip_and_energy(problem, result.a)))
     if first.words == _GRADUAL:
         followed = Derivation("events", "boundary elements, event by event,")
         progress(f"{problem.number}: {followed.words}")
@@ -115,7 +115,7 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
     tension = any(sigma or slope for _, sigma, slope in scene.load.along)
     symmetric = scene.even and not tension and (scene.material.alike or not any(scene.load.Q))
     if symmetric and {"m", "n"} <= targets.keys():
-        # m = n: a difference is an error. The first loading of unlike bodies leaves a trace of its direction
+        # m = n: a difference is an error. The first loading of dissimilar bodies leaves a trace of its direction
         apart = abs(targets["m"].value - targets["n"].value) / targets["m"].scale
         for key in "mn":
             targets[key] = replace(targets[key], uncertainty=max(apart, targets[key].uncertainty))
@@ -129,16 +129,18 @@ def covering(target: Target, words: str, off: float, unsure: float) -> Target:
     return replace(target, uncertainty=reached, known=f"{target.known}; {words} within {abs(off):.0e}")
 
 
-def _solved(problem: Problem, way: Derivation) -> Result:
+def _derived_result(problem: Problem, way: Derivation) -> Result:
     return run(problem.scene.replace(way.changes), way.method)[way.method]
 
 
-def _slip(problem: Problem, a: float) -> dict[str, Quantity]:
+def _slip_and_energy(problem: Problem, a: float) -> dict[str, Quantity]:
     """Slip and dissipated energy of finite elements: slip extrapolated from runs with more and more load steps."""
     found = []
     for steps in _STEPS:
         changes = {"fem.size": 0.01, "fem.order": 2, "load.steps": steps}
-        found.append(quantities(problem.scene, _solved(problem, Derivation("fem", "", changes)), problem.places, a))
+        found.append(
+            quantities(problem.scene, _derived_result(problem, Derivation("fem", "", changes)), problem.places, a)
+        )
     first, second, last = (each["slip"].value for each in found)
     ratio = (first - second) / (second - last)
     value = last - (second - last) / (ratio - 1) if ratio > 1 else last

@@ -64,7 +64,7 @@ def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
     for name, given in meta.inputs.items():
         told, file = f"{folder / META}: inputs.{name!r}", folder / name
         plain = str(PurePosixPath(name)) == name and ".." not in PurePosixPath(name).parts
-        if not plain or name in own or not _inside(file, folder):
+        if not plain or name in own or not _lies_in(file, folder):
             yield f"{told}: must be the path of an input file in the folder, such as decks/job.inp"
             continue
         try:
@@ -81,7 +81,7 @@ def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
         hidden = any(part.startswith(".") for part in file.relative_to(folder).parts)
         if file.is_dir() or hidden or name in meta.inputs:
             continue
-        if not _inside(file, folder):
+        if not _lies_in(file, folder):
             yield f"{file}: must be a file of the folder, not a link to a file elsewhere or to itself"
             continue
         if name in own:
@@ -94,7 +94,7 @@ def _input_faults(folder: Path, meta: Meta) -> Iterator[str]:
             yield f"{file}: must be listed in the table inputs of {META}, as {listed}, or left out"
 
 
-def _inside(file: Path, folder: Path) -> bool:
+def _lies_in(file: Path, folder: Path) -> bool:
     """Whether ``file`` lies in ``folder``, and is no link to elsewhere or to itself."""
     try:
         return file.resolve().is_relative_to(folder.resolve())

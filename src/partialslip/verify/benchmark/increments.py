@@ -7,12 +7,12 @@ from partialslip.scene import Scene
 from partialslip.verify.benchmark.turning import slip_reverses
 
 _INCREMENTS = 16  # accuracy: of the decks, from load point to load point
-_TURNING = 64  # accuracy: where slip turns round: with fewer, most codes find the zone of one step (docs/scoreboard.md)
+_TURNING = 64  # accuracy: where slip reverses: with fewer, most codes find the zone of one step (docs/scoreboard.md)
 
 
 def gradual(scene: Scene, increments: int | None = None) -> Scene:
     """``scene`` with exactly so many ``increments`` a step. None: with at least 16 where the contact grows or shrinks
-    while it slips (P or M varies, or the pressure depends on the shear), and at least 64 where slip turns round."""
+    while it slips (P or M varies, or the pressure depends on the shear), and at least 64 where slip reverses."""
     if increments is None:
         anew = (scene.presses_anew or not scene.mirrored) and not scene.only_pressed
         least = _TURNING if slip_reverses(scene) else _INCREMENTS if anew else 1

@@ -17,7 +17,7 @@ NOT_MONOTONE, NO_RATIO, MISSING = "not monotone", "no constant ratio", "not give
 
 
 class Climb(NamedTuple):
-    """What the last three meshes of a ladder say of a target.
+    """Convergence of a target over the last three meshes of a ladder.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Climb(NamedTuple):
 
 
 def climbs(problem: Problem, answer: Answer) -> list[Climb]:
-    """What the ladder of the ``answer`` says of each target of ``problem``; empty without a ladder."""
+    """Convergence of each target of ``problem`` on the ladder of the ``answer``; empty without a ladder."""
     return [_climb(problem, answer, key) for key in problem.targets] if answer.ladder else []
 
 
@@ -81,13 +81,13 @@ def _climb(problem: Problem, answer: Answer, key: str) -> Climb:
 def climb_rows(problem: Problem, answer: Answer, every: bool = False) -> list[tuple[str, ...]]:
     """Rows of :data:`CLIMB_HEADS` for the ladder of the ``answer``: of ``every`` target, or of those that are not
     tractions at points."""
-    return [_row(climb) for climb in climbs(problem, answer) if every or "@" not in climb.key]
+    return [_climb_row(climb) for climb in climbs(problem, answer) if every or "@" not in climb.key]
 
 
 CLIMB_HEADS = ("target", "error", "order", "GCI", "error, extrapolated", "extrapolated")
 
 
-def _row(climb: Climb) -> tuple[str, ...]:
+def _climb_row(climb: Climb) -> tuple[str, ...]:
     error = "" if climb.error is None else f"{climb.error:.1e}"
     if climb.order is None or climb.gci is None or climb.left is None:
         return (climb.key, error, climb.why, "", "", "")

@@ -5,16 +5,19 @@ and with the odd rows, and the larger difference is the error. The ends of zones
 """
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from msgspec.structs import replace
 
 from partialslip.codes.score.method import scored
+from partialslip.codes.score.mistakes import mistakes
 from partialslip.codes.score.read import read_tractions
 from partialslip.codes.score.samples import Samples
 from partialslip.result import Result
+from partialslip.run import run
+from partialslip.run.judge.reference import reference
 from partialslip.tools.errors import InputError
 from partialslip.verify.benchmark.grade import LIMITS, NOT_GRADED, NOT_OFFERED, graded
 from partialslip.verify.benchmark.measured import Quantity, targeted
@@ -30,29 +33,38 @@ _LEAST = 1e-5  # limit: least such difference, in the scale of the target: a ten
 
 class TableValues(NamedTuple):
     """What a table gives: ``values`` by key of the target, SI units, and the ``errors`` of reading them, in the scale
-    of the target; infinite where every second row is not enough."""
+    of the target; infinite where every second row is not enough; and ``notes`` on what was read, on units and signs."""
 
     values: dict[str, float]
     errors: dict[str, float]
+    notes: tuple[str, ...] = ()
 
     def allowed(self, key: str) -> float:
         """Largest difference of an answer's value from the table's, in the scale of the target."""
         return max(_SURE * self.errors[key], _LEAST)
 
 
-def read_table(problem: Problem, file: str | os.PathLike[str], columns: Mapping[str, str] | None = None) -> TableValues:
-    """Read what the tractions in ``file`` give of the targets of ``problem``.
+def read_table(
+    problem: Problem,
+    files: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    columns: Mapping[str, str] | None = None,
+    where: Mapping[str, str] | None = None,
+    factors: tuple[float, float, float] = (1.0, 1.0, 1.0),
+) -> TableValues:
+    """Read what the tractions in ``files``, one or one for each load point, give of the targets of ``problem``.
 
     a, m and n are found as :func:`partialslip.score` finds them; p, dq, q1 and q2 are linear between the rows, and the
-    places are those of the target's a. ``columns`` as there.
+    places are those of the target's a. ``columns``, ``where`` and
+    ``factors`` as there.
 
     Raises
     ------
     InputError
-        If the file cannot be read.
+        If a file cannot be read.
     """
-    origin = str(file)
-    samples = read_tractions(Path(file), problem.scene, (1.0, 1.0, 1.0), 1, None, columns)
+    paths = [Path(each) for each in ([files] if isinstance(files, (str, os.PathLike)) else files)]
+    origin, scene = " and ".join(map(str, paths)), problem.scene
+    samples = read_tractions(paths, scene, factors, chosen=columns, kept=where)
     result = _result(problem, samples, origin)
     found = targeted(problem, result)
     halves = [_half(problem, samples.coarser(first), origin) for first in (0, 1)]
@@ -60,12 +72,9 @@ def read_table(problem: Problem, file: str | os.PathLike[str], columns: Mapping[
     for key, each in found.items():
         apart = [abs(half[key].value - each.value) / each.scale if key in half else float("inf") for half in halves]
         errors[key] = max(each.error if each.error > 0 else 0.0, *apart)  # it may be NaN
-    return TableValues({key: each.value for key, each in found.items()}, errors)
-
-
-def answer_from(problem: Problem, file: str | os.PathLike[str], columns: Mapping[str, str] | None = None) -> Answer:
-    """Answer to ``problem`` from the tractions in ``file``. Parameters and errors as for :func:`read_table`."""
-    return Answer(dict(read_table(problem, file, columns).values))
+    known = run(scene, ["exact"]).results["exact"] if reference(scene).method == "exact" else None
+    likely = mistakes(scene, result, known) if known else ()
+    return TableValues({key: each.value for key, each in found.items()}, errors, (*likely, *result.notes))
 
 
 def _result(problem: Problem, samples: Samples, origin: str) -> Result:
@@ -116,4 +125,4 @@ def remark(problem: Problem, answer: Answer, table: TableValues) -> str:
         line += f"; {len(both) - len(compared)} are not: its rows are too far apart"
     taken = [key for key in table.values if key not in answer.values]
     named = ", ".join(taken) if len(taken) <= _NAMED else f"{len(taken)} values"
-    return line + (f"; read from it: {named}" if taken else "")
+    return "; ".join((line + (f"; read from it: {named}" if taken else ""), *table.notes))

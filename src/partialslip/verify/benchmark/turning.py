@@ -1,4 +1,4 @@
-"""Problems in which slip turns round (docs/theory.md, section 7), and a second way to their targets: boundary elements
+"""Problems in which slip reverses (docs/theory.md, section 7), and a second way to their targets: boundary elements
 that are followed event by event."""
 
 from typing import NamedTuple
@@ -30,7 +30,7 @@ class _Half(NamedTuple):
 
 
 def slip_reverses(scene: Scene) -> bool:
-    """Whether slip turns round between the load points of similar half-planes at constant pressure."""
+    """Whether slip reverses between the load points of similar half-planes at constant pressure."""
     load = scene.load
     if scene.finite or not scene.mirrored or scene.presses_anew or not load.in_phase:
         return False
@@ -41,17 +41,17 @@ def slip_reverses(scene: Scene) -> bool:
 
 
 def event_by_event(scene: Scene, places: tuple[float, ...]) -> dict[str, float]:
-    """m, n, dq at the ``places`` (x/a) and the dissipated energy of a ``scene`` in which slip turns round; SI units, by
+    """m, n, dq at the ``places`` (x/a) and the dissipated energy of a ``scene`` in which slip reverses; SI units, by
     keys of targets. The changes of Q and sigma are positive.
 
-    m and n come from the moments at which cells begin to slip and stick again, extrapolated to the load point and to
+    m and n come from the moments at which cells begin to slip and re-stick, extrapolated to the load point and to
     cells of no width. Their width divides that of the zone that drifts, 8 Q_f a/s_f, which is whole cells wide: others
     move m by up to half a cell.
     """
     pressed, f, load = contact(scene), scene.friction.f, scene.load
     Qf, sf = load.dQ / (2 * f * scene.P), load.dsigma / (f * pressed.p0)
     halves = [_half(Qf, sf, count, pressed.shape) for count in _CELLS]
-    coarse, fine = (np.array(_ends(half)) for half in halves)
+    coarse, fine = (np.array(_stick_ends(half)) for half in halves)
     left, right = (2 * fine - coarse) * pressed.a
     half = halves[-1]
     middles = (half.vertices[1:] + half.vertices[:-1]) / 2
@@ -82,8 +82,8 @@ def _width(Qf: float, sf: float, count: int) -> float:
     return 8 * Qf / sf / count
 
 
-def _ends(half: _Half) -> tuple[float, float]:
-    """Left and right end at the load point, x/a: where the last cells stuck again and where the last began to slip."""
+def _stick_ends(half: _Half) -> tuple[float, float]:
+    """Left and right end at the load point, x/a: where the last cells re-stuck and where the last began to slip."""
     x, leg = (half.vertices[1:] + half.vertices[:-1]) / 2, half.leg
     middle = x[~leg.slips].mean()
     taken, left = (leg.stuck > 0) & (x < middle), (leg.began > 0) & leg.slips & (x > middle)

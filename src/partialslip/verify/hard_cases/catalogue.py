@@ -66,11 +66,11 @@ def catalogue_page() -> str:
     lines = [_HEAD]
     for family in FAMILIES:
         lines += [f"## {family.title}", _filled(family.hard)]
-        lines += ["\n".join(_listed(family.cases))]
+        lines += ["\n".join(_case_items(family.cases))]
     return "\n\n".join(lines) + "\n"
 
 
-def _listed(cases: Iterable[Case]) -> Iterator[str]:
+def _case_items(cases: Iterable[Case]) -> Iterator[str]:
     """Yield items of a list: names of ``cases`` with the same methods and bars, the methods, the bars."""
     for told, names in grouped((_judged(case), f"`{case.name}`") for case in cases).items():
         yield _filled(f"- {', '.join(names)} {told}", "  ")

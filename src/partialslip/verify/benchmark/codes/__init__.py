@@ -106,9 +106,9 @@ def code_answers(
 def _answered(code: Code, problem: Problem) -> Answer | None:
     """Answer of ``code``, on its ladder of meshes if it has one; None if it does not offer the ``problem``."""
     if not isinstance(code, Own) or not code.sizes:
-        solved = _solved(code, problem.scene)
+        solved = _code_outcome(code, problem.scene)
         return _answer(problem, solved) if solved else None
-    rungs = [_solved(each, problem.scene) for each in code.rungs]
+    rungs = [_code_outcome(each, problem.scene) for each in code.rungs]
     found = [_answer(problem, each) for each in rungs if each]
     if len(found) < len(rungs):
         return None
@@ -116,7 +116,7 @@ def _answered(code: Code, problem: Problem) -> Answer | None:
     return replace(found[-1], ladder=tuple(ladder))
 
 
-def _solved(code: Code, scene: Scene) -> CodeOutcome | None:
+def _code_outcome(code: Code, scene: Scene) -> CodeOutcome | None:
     try:
         return code.solve(scene)
     except MissingLibraryError:

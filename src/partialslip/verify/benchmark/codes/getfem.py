@@ -65,11 +65,11 @@ class GetFEM:
             cpu_s, memory_mb = cpu_s + (found.cpu_s or 0.0), max(memory_mb, found.memory_mb or 0.0)
             if not found.result:
                 break
-            ends = _ends(found.result)
+            ends = _zone_ends(found.result)
         return found._replace(cpu_s=cpu_s, memory_mb=memory_mb)
 
 
-def _ends(result: Result) -> tuple[float, ...]:
+def _zone_ends(result: Result) -> tuple[float, ...]:
     """Ends of contact and stick zone, in a."""
     places = [end for ends in result.contact_ends or () for end in ends]
     if result.m is not None and result.n is not None:
