@@ -185,12 +185,9 @@ AS_BY_FEM = {
     "pad on a pulled specimen": (SCENE, [PAD, PULLED, *ROUGH], ("a", "left_2", "right_2", "m", "n", "p", "q")),
     "large tension": (LARGE, ["fem.accuracy=1e-4"], ("m", "n", "q")),
     "mean loads": (LARGE, ["load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", *ROUGH], ("a", "m", "n", "q")),
-    "out of phase": (
-        LARGE,
-        ["load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]", *ROUGH],
-        ("a", "m", "n", "q"),
-    ),
-}
+    "out of phase": (LARGE, ["load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]", *ROUGH],
+     ("a", "m", "n", "q")),
+}  # fmt: skip
 
 
 @pytest.mark.slow

@@ -45,19 +45,15 @@ def test_bad_axes_are_refused_in_one_line(text):
         read(text)
 
 
-@pytest.mark.parametrize("value", ["-2", "nan", "inf", "abc", "-4a", "4 mm"])
-def test_a_value_that_is_no_size_is_named(value):
-    told = f"--over bodies.lower.height: '{value}': must be a number > 0, such as 4 or 4a"
-    assert line_of(read, f"bodies.lower.height=2,{value}") == told
-
-
-@pytest.mark.parametrize(("key", "told"), [
-    ("bodies.lower.hight", "not in the scene; did you mean 'height'?"),
-    ("bodies.lowr.height", "no table 'lowr' in the scene; did you mean 'lower'?"),
-    ("load.xyzxyz", "not in the scene"),
+@pytest.mark.parametrize(("over", "told"), [
+    *((f"bodies.lower.height=2,{value}", f"'{value}': must be a number > 0, such as 4 or 4a")
+      for value in ("-2", "nan", "inf", "abc", "-4a", "4 mm")),
+    ("bodies.lower.hight=1,2", "not in the scene; did you mean 'height'?"),
+    ("bodies.lowr.height=1,2", "no table 'lowr' in the scene; did you mean 'lower'?"),
+    ("load.xyzxyz=1,2", "not in the scene"),
 ])  # fmt: skip
-def test_a_key_that_is_not_in_the_scene_is_told_the_nearest(key, told):
-    assert line_of(make, scene(), [read(f"{key}=1,2")]) == f"--over {key}: {told}"
+def test_a_value_that_is_no_size_is_named_and_so_is_the_key_nearest_to_one_that_is_not_there(over, told):
+    assert line_of(lambda: make(scene(), [read(over)])) == f"--over {over.partition('=')[0]}: {told}"
 
 
 def test_a_thickness_is_twice_the_height_of_a_body_on_rollers():
