@@ -10,11 +10,8 @@ from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.loading import one_step
 
 FOLDER = Path(__file__).parents[1] / "docs"
-DOCS = {
-    str(path.relative_to(FOLDER)): path.read_text("utf-8")
-    for path in sorted(FOLDER.rglob("*.md"))
-    if "_build" not in path.parts
-}
+DOCS = {str(path.relative_to(FOLDER)): path.read_text("utf-8") for path in sorted(FOLDER.rglob("*.md"))
+        if "_build" not in path.parts}  # fmt: skip
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 NAMES = sorted({name for text in DOCS.values() for name in re.findall(r"`(partialslip\w*(?:\.\w+)+)`", text)})
 SPOT = re.compile(r"^\| ([\d.]+) \| ([\d.]+) \| ([+-]1) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", flags=re.MULTILINE)

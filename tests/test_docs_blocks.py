@@ -65,11 +65,8 @@ def blocks(text):
     return found
 
 
-PAGES = {
-    str(path.relative_to(DOCS)): blocks(path.read_text("utf-8"))
-    for path in sorted(DOCS.rglob("*.md"))
-    if "_build" not in path.parts
-}
+PAGES = {str(path.relative_to(DOCS)): blocks(path.read_text("utf-8")) for path in sorted(DOCS.rglob("*.md"))
+         if "_build" not in path.parts}  # fmt: skip
 PAGES = {name: found for name, found in PAGES.items() if found}
 
 
@@ -77,20 +74,15 @@ def agrees(printed, shown):
     """Whether ``printed`` is what a page shows."""
     printed, shown = (re.sub("─+", "─", COSTS.sub("", text)) for text in (printed, shown))
     lines = [PARTS.split(" ".join(line.split())) for line in shown.splitlines() if line.strip()]
-    numbers = [
-        (part, _error(line))  # both values of a row are in its unit, and so is the error
-        for line in lines
-        for part in line[1::2]
-        if part != "..."
-    ]
-    pattern = " ".join(
-        "".join(
-            re.escape(part) if k % 2 == 0 else ".*" if part == "..." else f"({NUMBER})" for k, part in enumerate(line)
-        )
-        for line in lines
-    )
+    # both values of a row are in its unit, and so is the error
+    numbers = [(part, _error(line)) for line in lines for part in line[1::2] if part != "..."]
+    pattern = " ".join("".join(_pattern(*each) for each in enumerate(line)) for line in lines)
     found = re.fullmatch(pattern, " ".join(printed.split()))
     return bool(found) and all(same(value, *wanted) for value, wanted in zip(found.groups(), numbers, strict=True))
+
+
+def _pattern(number, part):
+    return re.escape(part) if number % 2 == 0 else ".*" if part == "..." else f"({NUMBER})"
 
 
 def _error(line):

@@ -53,10 +53,3 @@ def test_a_section_and_its_figure_are_what_the_script_makes():
     run = partialslip.run(partialslip.load_scene(name), stresses=True)
     assert agrees(SCRIPT["entry"](name, name, run).strip(), section(name).strip())
     assert texts(traction_svg(run)) == texts((DOCS / "gallery" / f"{name}.svg").read_text("utf-8"))
-
-
-def test_another_result_is_noticed():
-    text = section("hertz-shear")
-    assert agrees(text, text)
-    assert not agrees(text, text.replace("0.6324", "0.6325"))
-    assert not agrees(text, text.replace("| ok |", "| MISSED |", 1))

@@ -22,14 +22,18 @@ def test_every_name_is_there_once_and_documented():
     assert all(getattr(halfplane, name).__doc__ for name in halfplane.__all__)
 
 
+def done(code, *options):
+    """What became of a program."""
+    return subprocess.run([sys.executable, *options, "-c", code], capture_output=True, text=True, check=True)
+
+
 @pytest.mark.parametrize("name", ["run", "plan", "score", "export"])
 def test_a_function_is_not_hidden_by_its_module(name):
     """Also under the module name of version 1.0, which warns, and leads to the same module."""
     module = NEW_NAMES.get(name, name)
     code = f"import partialslip\nimport partialslip.{name}\nprint(callable(partialslip.{name}))"
     code += f"\nfrom partialslip.{module} import {name}\nprint(partialslip.{name} is {name})"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["True", "True"]
+    assert done(code).stdout.split() == ["True", "True"]
 
 
 @pytest.mark.parametrize("old", ["fatigue", "benchmark", "judge.verdict", "run.judge.means", "errors"])
@@ -40,9 +44,9 @@ found = sys.modules["{new}"]
 name = found.__spec__.name
 import partialslip.{old}
 print(sys.modules["partialslip.{old}"] is found, found.__spec__.name == name)"""
-    done = subprocess.run([sys.executable, "-W", "always", "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["True", "True"]
-    assert f"DeprecationWarning: partialslip.{old} is now {new}" in done.stderr
+    found = done(code, "-W", "always")
+    assert found.stdout.split() == ["True", "True"]
+    assert f"DeprecationWarning: partialslip.{old} is now {new}" in found.stderr
 
 
 @pytest.mark.parametrize("name", ["study.cost.ladder", "verify.benchmark.badge"])
@@ -52,8 +56,7 @@ def test_a_function_is_not_hidden_by_its_former_module(name):
 before = partialslip.{home}.{function}
 module = importlib.import_module("partialslip.{name}")
 print(partialslip.{home}.{function} is before is module.{function})"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "True\n"
+    assert done(code).stdout == "True\n"
 
 
 def test_other_names():
@@ -80,5 +83,4 @@ IMPORTED = {  # which of some packages a piece of code imports
 def test_only_what_is_used_is_imported(code):
     packages, found = IMPORTED[code]
     code += f"\nimport sys\nprint(*({{*{packages.split()}}} & {{*sys.modules}}), file=sys.stderr)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stderr.split() == found.split()
+    assert done(code).stderr.split() == found.split()

@@ -50,18 +50,6 @@ def test_the_size_is_that_of_the_body(written):
         assert np.ptp(mesh.points, axis=0) == pytest.approx([width, height], rel=2e-3)
 
 
-def test_loads_are_those_of_the_path(written):
-    problem, folder = written
-    told = json.loads((folder / "model.json").read_text("utf-8"))
-    last = [(step["P"], step["Q"], step["sigma"]) for step in told["steps"][-2:]]
-    assert last == [(problem.scene.P, Q, sigma) for Q, sigma in problem.scene.load.points]
-    assert told["f"] == problem.scene.friction.f
-
-
-def test_files_are_always_the_same():
-    assert files(PROBLEMS["PS-23"]) == files(PROBLEMS["PS-23"])
-
-
 @pytest.mark.slow
 def test_every_problem_has_files():
     for problem in PROBLEMS.values():

@@ -1,5 +1,6 @@
 """The page of the scoreboard is made from the answers that are kept."""
 
+import json
 import runpy
 from pathlib import Path
 
@@ -13,6 +14,13 @@ SCRIPT = runpy.run_path(str(DOCS / "scoreboard.py"))
 
 def test_the_page_is_todays():
     assert (DOCS / "scoreboard.md").read_text("utf-8") == SCRIPT["page"]()
+
+
+def test_the_table_of_stiffness_on_the_page_of_symptoms_is_todays():
+    peers = DOCS.parent / "benchmarks" / "peers"
+    lines = [json.loads(line) for line in (peers / "stiffness.jsonl").read_text("utf-8").splitlines()]
+    assert len(lines) > 24
+    assert runpy.run_path(str(peers / "stiffness.py"))["table"](lines) in (DOCS / "symptoms.md").read_text("utf-8")
 
 
 def test_exact_answers_are_the_targets():
@@ -34,14 +42,3 @@ def test_no_answer_has_a_better_grade_than_the_targets_allow():
     for folder in SCRIPT["SUBMISSIONS"].iterdir():
         for number, graded in grades(problems, read_submission(folder, problems)).items():
             assert graded.overall.grade >= best_grade(problems[number])
-
-
-def test_whole_processes_cost_more_than_solutions():
-    own = read_submission(SCRIPT["SUBMISSIONS"] / "exact", read_problems())
-    assert 0.5 < float(SCRIPT["_whole"](own, "PS-02", "A (0.02 s)").removeprefix("A (").removesuffix(" s)")) < 2
-    other = read_submission(SCRIPT["SUBMISSIONS"] / "getfem", read_problems())
-    assert SCRIPT["_whole"](other, "PS-02", "E (2.8 s)") == "E (2.8 s)"
-
-
-def test_every_problem_has_a_short_title():
-    assert SCRIPT["NAMES"].keys() == read_problems().keys()

@@ -10,7 +10,8 @@ import pytest
 
 from partialslip import load_scene, run
 from partialslip.halfplane import contact, one_step_zone
-from partialslip.march.equivalent import data, method, shares, stand_ins
+from partialslip.halfplane import stick_zone as half_plane_zone
+from partialslip.march.equivalent import data, method, shares, stand_ins, stick_zone
 from partialslip.result.rig import Rig, Terms, key_of, write_rig
 from partialslip.run import rig_of
 from partialslip.tools.errors import InputError
@@ -184,12 +185,9 @@ AS_BY_FEM = {
     "pad on a pulled specimen": (SCENE, [PAD, PULLED, *ROUGH], ("a", "left_2", "right_2", "m", "n", "p", "q")),
     "large tension": (LARGE, ["fem.accuracy=1e-4"], ("m", "n", "q")),
     "mean loads": (LARGE, ["load.Q=[31415.9, 219911.5]", "load.sigma=[2e8, 1e9]", *ROUGH], ("a", "m", "n", "q")),
-    "out of phase": (
-        LARGE,
-        ["load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]", *ROUGH],
-        ("a", "m", "n", "q"),
-    ),
-}
+    "out of phase": (LARGE, ["load.Q=[15e4, 0, -15e4, 0]", "load.sigma=[2e8, 6e8, 2e8, -2e8]", *ROUGH],
+     ("a", "m", "n", "q")),
+}  # fmt: skip
 
 
 @pytest.mark.slow
@@ -224,9 +222,7 @@ def test_units_do_not_matter():
     one = solved(*UNLIKE)
     bodies = [setting.replace("e-3", "") for setting in UNLIKE]
     scene = load_scene(SCENE)
-    loads = [
-        f"load.{key}={[each * by for each in getattr(scene.load, key)]}" for key, by in (("Q", 1e-3), ("sigma", 1e-6))
-    ]
+    loads = [f"load.Q={[Q * 1e-3 for Q in scene.load.Q]}", f"load.sigma={[each * 1e-6 for each in scene.load.sigma]}"]
     other = solved(
         *bodies, *loads, "profile.R=50", f"material.E={scene.material.E * 1e-6}", f"load.p0={scene.load.p0 * 1e-6}"
     )
@@ -314,15 +310,12 @@ def test_contacts_out_of_range_are_refused_before_they_are_marched(scene):
         stand_ins(scene.replace(load={"Q": [1e5, 0, -1e5], "sigma": [0, 1e8, 0]}), rig)
 
 
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ((), "bodies: must have upper or lower"),
-        ((*BLOCKS, "material.upper={E=2e11, nu=0.3}"), "material.upper, material.lower: the bodies differ"),
-        ((*BLOCKS, "load={P=[5e5, 6e5], Q=[-1e5, 1e5]}"), "load.P: must be constant"),
-        (both(3e-3, 3e-3), "bodies: must be larger compared with the contact"),
-    ],
-)
+@pytest.mark.parametrize(("settings", "said"), [
+    ((), "bodies: must have upper or lower"),
+    ((*BLOCKS, "material.upper={E=2e11, nu=0.3}"), "material.upper, material.lower: the bodies differ"),
+    ((*BLOCKS, "load={P=[5e5, 6e5], Q=[-1e5, 1e5]}"), "load.P: must be constant"),
+    (both(3e-3, 3e-3), "bodies: must be larger compared with the contact"),
+])  # fmt: skip
 def test_what_half_planes_cannot_stand_for_is_refused(settings, said):
     with pytest.raises(InputError, match=said):
         run(load_scene(SCENE, list(settings)), ["equivalent"])
@@ -340,3 +333,43 @@ def test_half_planes_need_no_finite_elements(tmp_path):
         "print([name for name in ('skfem', 'gmsh', 'partialslip_fem') if name in sys.modules])"
     )
     assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+# many loads at once are as one by one
+
+PAIR = load_scene(SCENE, BLOCKS)
+UNIT = 2 * PAIR.friction.f * PAIR.P, PAIR.friction.f * 4e8  # of dQ and dsigma
+LOADS = np.array([[0.3, 0.5], [0.5, -1.5], [-0.2, 4.0], [0.95, 0.1], [-0.6, 0.0]]) * UNIT
+EVEN = made(PAIR, 4e-3, xx={(2, 0): 6e3, (0, 2): 6e3, (1, 1): 2.5e3, (4, 0): -2e7, (0, 4): -2e7},
+            yy={(2, 0): 4e3, (0, 2): 4e3, (1, 1): -6e3})  # fmt: skip
+
+
+@pytest.mark.parametrize(("dQ", "dsigma"), LOADS)
+def test_many_are_as_one_by_one(dQ, dsigma):
+    scene = PAIR.replace(load={"Q": [-dQ / 2, dQ / 2], "sigma": [-dsigma / 2, dsigma / 2]})
+    one = stand_ins(scene, EVEN).result
+    assert one.method == "exact"
+    found = stick_zone(PAIR, EVEN, dQ, dsigma)
+    assert (found.m / one.a, found.n / one.a) == pytest.approx((one.m / one.a, one.n / one.a), abs=1e-9)
+
+
+def test_shapes_follow_numpy_and_what_slides_is_marked():
+    dQ = np.array([[0.3], [1.2], [-0.6]]) * UNIT[0]
+    found = stick_zone(PAIR, EVEN, dQ, LOADS[:2, 1])
+    assert found.m.shape == (3, 2)
+    assert np.isnan(found.m[1]).all()
+    assert (found.s[1] == 0).all()
+    assert np.isfinite(found.m[[0, 2]]).all()
+    assert found.m[0, 1] == stick_zone(PAIR, EVEN, dQ[0, 0], LOADS[1, 1]).m
+    with pytest.raises(InputError, match="or the contact slides"):
+        stick_zone(PAIR, EVEN, 1.2 * UNIT[0], 0.0)
+    with pytest.raises(InputError, match="dsigma = nan: must be finite"):
+        stick_zone(PAIR, EVEN, 0.0, np.nan)
+
+
+def test_a_rig_of_nothing_is_half_planes_under_many_loads():
+    plain = contact(load_scene(SCENE))
+    found = stick_zone(PAIR, made(PAIR), *LOADS.T)
+    known = half_plane_zone(plain, PAIR.friction.f, *LOADS.T)
+    assert np.allclose(found.m, known.m, rtol=0, atol=1e-13 * plain.a)
+    assert np.allclose(found.n, known.n, rtol=0, atol=1e-13 * plain.a)

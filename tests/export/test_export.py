@@ -284,16 +284,12 @@ def test_gmsh_file(files, made):
             assert np.allclose(ends, start, rtol=1e-12, atol=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("override", "said"),
-    [
-        ("bodies.upper={width=0.0018, height=0.01}", "bodies.upper.width: must be wider than the contact"),
-        ("bodies.lower={mesh='body.msh'}", "bodies.lower.mesh: must be left out to export"),
-        ("load.sigma_slope=[0, 1e9]", "load.sigma_slope"),
-        ("load.Q=[-400e3, 400e3]", "load.Q"),
-        ("load={P=[2e5, 6e5], Q=[-11e4, 20e4]}", "load.Q: must be within f P = 100000 N/m at load point 1;"),
-    ],
-)
+@pytest.mark.parametrize(("override", "said"), [
+    ("bodies.upper={width=0.0018, height=0.01}", "bodies.upper.width: must be wider than the contact"),
+    ("bodies.lower={mesh='body.msh'}", "bodies.lower.mesh: must be left out to export"),
+    ("load.sigma_slope=[0, 1e9]", "load.sigma_slope"), ("load.Q=[-400e3, 400e3]", "load.Q"),
+    ("load={P=[2e5, 6e5], Q=[-11e4, 20e4]}", "load.Q: must be within f P = 100000 N/m at load point 1;"),
+])  # fmt: skip
 def test_what_cannot_be_exported(override, said):
     with pytest.raises(InputError, match=said):
         export(load_scene(SCENE, [override]), "abaqus")

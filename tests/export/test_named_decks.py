@@ -18,22 +18,17 @@ from partialslip.codes.export.aster import aster_files
 from partialslip.codes.export.model import modelled
 from partialslip.codes.export.moose import moose_files
 from partialslip.run import run
-from partialslip.verify.benchmark import read_problems
-from partialslip.verify.benchmark.neutral import files as problem_files
 
 SCENE = "hertz-large-tension"
 PULLED = ["bodies.upper={kind='pad', width=0.02, height=0.01, holder={width=0.03, height=0.01}}",
           "bodies.lower={width=0.06, height=0.01, support='roller', pulled=true}"]  # fmt: skip
 SCENES = {
-    "half-planes": [],
-    "clamped block": ["bodies.lower={width=0.012, height=0.008}"],
-    "pulled": PULLED,
+    "half-planes": [], "clamped block": ["bodies.lower={width=0.012, height=0.008}"], "pulled": PULLED,
     "rollers": [f"bodies.{name}={{width=0.016, height=0.008, support='roller'}}" for name in ("lower", "upper")],
     "unlike": ["material.upper={E=2e11, nu=0.3}", "load.sigma=[0, 0]"],
     "varying": ["load={P=[4e5, 8e5], Q=[-1e5, 1e5], sigma=[0, 4e7], steps=3, cycles=2}"],
-    "pressed": ["load.Q=[0, 0]", "load.sigma=[0, 0]", "friction.f=0"],
-    "N-mm": ["shown_in='N-mm'"],
-}
+    "pressed": ["load.Q=[0, 0]", "load.sigma=[0, 0]", "friction.f=0"], "N-mm": ["shown_in='N-mm'"],
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module", params=SCENES)
@@ -304,39 +299,3 @@ def test_command(to, tmp_path, monkeypatch, capsys):
 )  # fmt: skip
 def test_what_cannot_be_carried(to, overrides, said):
     assert re.search(re.escape(said.format(to)), line_of(export, load_scene(SCENE, overrides), to, **COARSE))
-
-
-def parsed(files, tmp_path, monkeypatch):
-    """Parse both decks of a problem, and check the names of boundaries."""
-    text = files["moose-untested.i"].decode()
-    deck = moose_blocks(text)
-    _, lines, _ = moose_mesh(files["moose-untested.msh"], tmp_path)
-    assert {name for told in deck["BCs"].values() for name in told["boundary"].split()} <= lines.keys()
-    monkeypatch.chdir(tmp_path)
-    names, mail = (
-        aster_concepts(files["code_aster-untested.comm"].decode()),
-        Mail(files["code_aster-untested.mail"].decode()),
-    )
-    given = [concept.given for concept in names.values() if hasattr(concept, "given")]
-    assert set(groups_of(given, "GROUP_MA")) <= mail.of_cells.keys()
-    assert set(groups_of(given, "GROUP_NO")) <= mail.of_nodes.keys()
-    for name in (name for name in files if "untested" in name and not name.endswith((".msh", ".mail", ".export"))):
-        assert b"untested" in files[name].splitlines()[1]
-
-
-@pytest.mark.parametrize("number", ["PS-03", "PS-24"])
-def test_decks_of_a_problem(number, tmp_path, monkeypatch):
-    parsed(problem_files(read_problems()[number]), tmp_path, monkeypatch)
-
-
-@pytest.mark.slow
-def test_decks_of_every_problem(tmp_path, monkeypatch):
-    """All but that with a moment."""
-    without = []
-    for number, problem in read_problems().items():
-        files = problem_files(problem)
-        if "moose-untested.i" in files:
-            parsed(files, tmp_path, monkeypatch)
-        else:
-            without.append(number)
-    assert without == ["PS-21"]

@@ -13,13 +13,9 @@ from partialslip.study.fatigue.places import averaged, largest_at
 from partialslip.tools.errors import InputError
 
 CONSTANTS = {
-    "k_findley": 0.3,
-    "k_fatemi_socie": 1.0,
-    "sigma_y": 330e6,
-    "alpha_dang_van": 0.3,
-    "alpha_crossland": 0.3,
+    "k_findley": 0.3, "k_fatemi_socie": 1.0, "sigma_y": 330e6, "alpha_dang_van": 0.3, "alpha_crossland": 0.3,
     "distance": 50e-6,
-}
+}  # fmt: skip
 SCENE = partialslip.load_scene("fretting-aluminium").replace(fatigue=CONSTANTS)
 RESULT = partialslip.run(SCENE, "exact", subsurface=True)["exact"]
 CRITERIA = ("principal", "swt", "fatemi-socie", "findley", "dang-van", "crossland")

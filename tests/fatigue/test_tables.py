@@ -6,16 +6,7 @@ import pytest
 
 import partialslip
 from partialslip.report.answer import with_error
-from partialslip.study.fatigue import assess, hot_spots
-from partialslip.study.fatigue.tables import (
-    assessment_answer,
-    assessment_heading,
-    assessment_notes,
-    average_table,
-    edge_table,
-    edge_units,
-    rating_table,
-)
+from partialslip.study.fatigue import assess, hot_spots, tables
 
 SCENE = partialslip.load_scene("fretting-aluminium", ["shown_in=N-mm"]).replace(
     {"fatigue.distance": 50e-6, "fem.accuracy": 1e-2}
@@ -35,8 +26,8 @@ def column(table, heading):
 def test_values_have_the_errors_that_a_study_of_sizes_tells(fem):
     found, spots = assess(SCENE, fem, ["swt"]), hot_spots(SCENE, fem)
     for text, key in (
-        (column(rating_table(found), "surface"), "swt"),
-        *((column(average_table(found), over), f"swt.{over}") for over in ("point", "line", "area")),
+        (column(tables.rating_table(found), "surface"), "swt"),
+        *((column(tables.average_table(found), over), f"swt.{over}") for over in ("point", "line", "area")),
     ):
         spot = spots[key]
         assert text == [with_error(spot.value, spot.error * spot.value, 6)]  # MPa
@@ -50,24 +41,18 @@ def test_without_an_estimate_few_digits_stand_and_a_line_says_so(fem):
         (fem, "upper", "they are estimated in the lower body alone"),
     ):
         found = assess(SCENE, result, ["swt"], body=body)
-        (text,) = column(rating_table(found), "surface")
+        (text,) = column(tables.rating_table(found), "surface")
         assert "+-" not in text
         assert len(text.replace(".", "").lstrip("0")) <= 4
-        assert f"errors of the criteria are not known: {why}" in assessment_notes(found)
+        assert f"errors of the criteria are not known: {why}" in tables.assessment_notes(found)
 
 
 def test_the_method_has_its_say(fem):
     """Regime, ends with their errors, and its notes."""
     found = assess(SCENE, replace(fem, notes=("accuracy 0.01 not reached",)), ["swt"])
-    assert assessment_answer(found).startswith("fem: small tension; m, n 0.4")
-    assert assessment_answer(found).count("+-") == 3
-    assert "fem: accuracy 0.01 not reached" in assessment_notes(found)
-
-
-def test_a_distance_far_beyond_the_contact_looks_like_a_slip_of_unit(fem):
-    found = assess(SCENE.replace({"fatigue.distance": 50.0}), fem, ["swt"])
-    (line,) = (line for line in assessment_notes(found) if "fatigue.distance" in line)
-    assert line.endswith(" a, far beyond the contact: is units = 'N-mm' right?")
+    assert tables.assessment_answer(found).startswith("fem: small tension; m, n 0.4")
+    assert tables.assessment_answer(found).count("+-") == 3
+    assert "fem: accuracy 0.01 not reached" in tables.assessment_notes(found)
 
 
 def test_the_heading_tells_whether_there_are_load_points_enough(fem):
@@ -78,23 +63,16 @@ def test_the_heading_tells_whether_there_are_load_points_enough(fem):
         (float("nan"), ""),
     ):
         rating = replace(found.ratings["swt"], change=change)
-        heading = assessment_heading(replace(found, ratings={"swt": rating}))
+        heading = tables.assessment_heading(replace(found, ratings={"swt": rating}))
         assert heading == f"fretting-aluminium, lower body, by fem: {len(found.phases)} load points{told}"
-
-
-def test_places_are_told_in_a_and_in_the_unit_of_the_scene(fem):
-    for scene in (SCENE, SCENE.replace(shown_in="SI")):
-        found = assess(scene, fem, ["swt"])
-        (share,), (x,) = (column(rating_table(found), heading) for heading in ("x/a", "x, mm"))
-        assert float(x) == pytest.approx(float(share) * fem.a * 1e3, rel=1e-3)
 
 
 def test_the_largest_inside_has_columns_only_where_it_is_larger(fem):
     found = assess(SCENE, fem, ["swt"])
-    assert "largest" not in rating_table(found)[0]
+    assert "largest" not in tables.rating_table(found)[0]
     rating = found.ratings["swt"]
     inside = replace(rating, peak=replace(rating.surface, depth=fem.a / 2, value=2 * rating.surface.value))
-    table = rating_table(replace(found, ratings={"swt": inside}))
+    table = tables.rating_table(replace(found, ratings={"swt": inside}))
     assert column(table, "depth/a") == ["0.5000"]
     assert column(table, "largest")[0].startswith(f"{2 * rating.surface.value / 1e6:.1f}")
 
@@ -104,8 +82,8 @@ def test_what_is_not_known_of_the_ends_has_no_column(fem):
     found = assess(SCENE, fem, ["swt"])
     ends = tuple(replace(edge, K_T=None, predicted=None) for edge in found.edges)
     finite = replace(found, edges=ends)
-    assert edge_table(finite)[0] == ["end", "K_N", "slip/a", "K_S"]
-    assert edge_units(finite) == "K_N and K_S in MPa/mm^0.5"
+    assert tables.edge_table(finite)[0] == ["end", "K_N", "slip/a", "K_S"]
+    assert tables.edge_units(finite) == "K_N and K_S in MPa/mm^0.5"
     slides = replace(found, edges=tuple(replace(edge, K_S=None) for edge in ends))
-    assert edge_table(slides)[0] == ["end", "K_N", "slip/a"]
-    assert edge_units(slides) == "K_N in MPa/mm^0.5"
+    assert tables.edge_table(slides)[0] == ["end", "K_N", "slip/a"]
+    assert tables.edge_units(slides) == "K_N in MPa/mm^0.5"

@@ -5,17 +5,22 @@ import numpy as np
 P = np.pi / 2  # of a contact with a = p0 = 1
 
 
+def compliance(x, ends):
+    """Displacements at ``x`` due to unit tractions that are constant on the cells between ``ends``; A = 1."""
+
+    def primitive(apart):
+        return apart * np.log(np.abs(apart)) - apart
+
+    return -(primitive(x[:, None] - ends[:-1]) - primitive(x[:, None] - ends[1:])) / np.pi
+
+
 def march(shape, path, count=80, steps=12):
     """q along a path of (Q in f P, sigma in f p0, and its slope in f p0/a if it has one), from nothing, in so many
     ``steps`` to each point: cells of constant
     traction, collocation, active sets. Returns points, widths of cells, p and q at each point, scaled."""
     ends = -np.cos(np.linspace(0, np.pi, count + 1))
     x, widths = (ends[1:] + ends[:-1]) / 2, np.diff(ends)
-
-    def primitive(apart):
-        return apart * np.log(np.abs(apart)) - apart
-
-    C = -(primitive(x[:, None] - ends[:-1]) - primitive(x[:, None] - ends[1:])) / np.pi
+    C = compliance(x, ends)
     path = [(*point, 0.0)[:3] for point in path]
     p, q, load, found = shape.pressure(x), np.zeros(count), np.zeros(3), []
     for point in np.array(path) * [P, 1, 1]:

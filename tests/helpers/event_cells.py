@@ -1,19 +1,15 @@
 """Half cycles of a Hertz contact, cell by cell and event by event: it shares nothing with the package."""
 
 import numpy as np
+from boundary_elements import compliance
 
 
 def hertz(count):
     """Middles, widths, compliance of equal cells of constant traction, and their mean pressures; a = f = A = p0 = 1."""
     ends = np.linspace(-1, 1, count + 1)
     x, widths = (ends[1:] + ends[:-1]) / 2, np.diff(ends)
-
-    def primitive(apart):
-        return apart * np.log(np.abs(apart)) - apart
-
     force = (ends * np.sqrt(1 - ends**2) + np.arcsin(ends)) / 2
-    compliance = -(primitive(x[:, None] - ends[:-1]) - primitive(x[:, None] - ends[1:])) / np.pi
-    return x, widths, compliance, np.diff(force) / widths
+    return x, widths, compliance(x, ends), np.diff(force) / widths
 
 
 def follow(count, Qf, sf, halves=6):
@@ -23,7 +19,7 @@ def follow(count, Qf, sf, halves=6):
     Between events (a cell comes to its bound, or sticks again) all rates are constant. A cell at its bound slips or
     sticks as Coulomb's conditions of the rates say.
     """
-    x, widths, compliance, p = hertz(count)
+    x, widths, C, p = hertz(count)
     q = np.zeros(count)
     for half in range(halves):
         sign = (-1) ** (halves - 1 - half)
@@ -31,7 +27,7 @@ def follow(count, Qf, sf, halves=6):
         side = np.where(np.abs(q) >= p * (1 - 1e-12), np.sign(q), 0).astype(int)
         done, parted = 0.0, 0.0
         while done < 1:
-            side, rate = _rates(side, q, p, widths, compliance, tension * x / 4, shear)
+            side, rate = _rates(side, q, p, widths, C, tension * x / 4, shear)
             sticks = np.flatnonzero(side == 0)
             room = (np.sign(rate[sticks]) * p[sticks] - q[sticks]) / rate[sticks]
             first = int(np.argmin(room))
@@ -46,16 +42,16 @@ def follow(count, Qf, sf, halves=6):
     return x, q, parted
 
 
-def _rates(side, q, p, widths, compliance, pulled, shear):
+def _rates(side, q, p, widths, C, pulled, shear):
     """Sides of slipping cells, 0 of sticking ones, and rates of q."""
     side, all_at_once = side.copy(), True
     for count in range(400):
         sticks = side == 0
-        system = np.block([[compliance[np.ix_(sticks, sticks)], -np.ones((sticks.sum(), 1))], [widths[sticks], 0.0]])
+        system = np.block([[C[np.ix_(sticks, sticks)], -np.ones((sticks.sum(), 1))], [widths[sticks], 0.0]])
         found = np.linalg.solve(system, np.append(pulled[sticks], shear))
         rate = np.zeros(len(q))
         rate[sticks] = found[:-1]
-        slip = pulled - compliance @ rate + found[-1]
+        slip = pulled - C @ rate + found[-1]
         back = ~sticks & (side * slip < -1e-13)
         over = sticks & (np.abs(q) >= p * (1 - 1e-12)) & (np.sign(q) * rate > 1e-13)
         if not (back | over).any():

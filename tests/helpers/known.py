@@ -4,6 +4,8 @@ import numpy as np
 
 from partialslip import load_scene
 from partialslip.result import Cost, Result, Traction, TractionAt
+from partialslip.run import compared
+from partialslip.scene.plan import plan
 
 F, P, SHARE = 0.5, 1e5, 0.36  # Q = +-0.36 f P
 SCENE = load_scene(
@@ -38,21 +40,17 @@ def traction(p=1.0, q=1.0, levels=True, cells=41, add=lambda x: 0 * x, p1=None):
 def result(method="fem", centre=0.0, half_width=C, a=1.0, regime="small tension", of=None, **more):
     """Return a result with lengths in the exact a; ``centre`` None means no stick zone."""
     return Result(
-        method=method,
-        a=a * A,
-        p0=P0 / a,
-        regime=regime,
-        stick_centre=None if centre is None else centre * A,
-        stick_half_width=None if centre is None else half_width * A,
-        traction=of or traction(),
+        method=method, a=a * A, p0=P0 / a, regime=regime, stick_centre=None if centre is None else centre * A,
+        stick_half_width=None if centre is None else half_width * A, traction=of or traction(),
         cost=Cost(1.0, 1.0, None),
-        **{
-            "certificate": {"kkt": 1e-12},
-            "last_cycle_change": 1.0,
-            "estimate": {"a": 2e-4, "m": 1e-4, "left": 3e-4},
-            **more,
-        },
-    )
+        **{"certificate": {"kkt": 1e-12}, "last_cycle_change": 1.0, "estimate": {"a": 2e-4, "m": 1e-4, "left": 3e-4},
+         **more},
+    )  # fmt: skip
 
 
 EXACT = result("exact", estimate={})
+
+
+def ran(results, scene=SCENE, accuracy=1e-3):
+    """A run that has found ``results``, by name."""
+    return compared(scene, plan(scene), results, accuracy)

@@ -23,14 +23,8 @@ def solved(scene, labels=None, errors=None, process=None, **methods):
     """Return a solved job: ``methods`` gives fields of the records, ``errors`` those of the finite elements."""
     compared = ComparisonRecord(Outcome.NOT_JUDGED, errors or {}, None, None, None, None, {}, (), (), ())
     run = Record(
-        schema=SCHEMA,
-        outcome=Outcome.NOT_JUDGED,
-        reference="exact",
-        missed=(),
-        scene=scene,
-        plan=PlanRecord((), (), (), {}),
-        methods={name: method(**fields) for name, fields in methods.items()},
-        comparison={"fem": compared},
-        versions={},
-    )
+        schema=SCHEMA, outcome=Outcome.NOT_JUDGED, reference="exact", missed=(), scene=scene,
+        plan=PlanRecord((), (), (), {}), methods={name: method(**fields) for name, fields in methods.items()},
+        comparison={"fem": compared}, versions={},
+    )  # fmt: skip
     return Solved(labels=labels or {}, run=run, process=process)

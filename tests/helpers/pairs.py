@@ -4,13 +4,13 @@ Units, directions, names of bodies, what stretches both, steps, stops, places an
 """
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise, product
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from unittest.mock import Mock, patch
 
 import numpy as np
@@ -18,20 +18,14 @@ import numpy as np
 from partialslip import halfplane, load_scene, load_state, plan
 from partialslip.friction import coulomb_constant_pressure as coulomb
 from partialslip.friction import steps
-from partialslip.friction.coupled_step import Relative
-from partialslip.friction.history import History
 from partialslip.march import driver
 from partialslip.march import method as marching
-from partialslip.result import Clock, Result
 from partialslip.run.judge import Q_BAR, cell_means
-from partialslip.scene import Scene
 from partialslip.tools.arrays import Array
 from partialslip_fem import bodies, solving
 from partialslip_fem import method as fem_method
-from partialslip_fem.contact import CondensedBody
 from partialslip_fem.mesh_solution import Adapted
 from partialslip_fem.mortar import transfer
-from partialslip_fem.problem import ScaledProblem
 from partialslip_meshes import Mesh, block
 
 METHODS = {"exact": halfplane.solve, "march": marching.solve, "fem": fem_method.solve}
@@ -42,13 +36,11 @@ UNLIKE = (
     "material.upper.E=728e9", "material.upper.nu=0.2", "bodies.upper.width=16e-3", "bodies.upper.height=4e-3",
 )  # fmt: skip
 SCENES = {
-    "small tension": ("hertz-small-tension",),
-    "large tension": ("hertz-large-tension",),
-    "flat and rounded": ("flat-rounded",),
-    "mean loads": ("hertz-large-tension", *MEAN, "load.cycles=2"),
+    "small tension": ("hertz-small-tension",), "large tension": ("hertz-large-tension",),
+    "flat and rounded": ("flat-rounded",), "mean loads": ("hertz-large-tension", *MEAN, "load.cycles=2"),
     "out of phase": ("hertz-large-tension", *CIRCLE, "load.cycles=2"),
     "unlike bodies": ("hertz-large-tension", *UNLIKE, "load.cycles=2", "load.steps=2"),
-}
+}  # fmt: skip
 POINTS = np.sin(np.linspace(-1, 1, 202)[1:-1] * np.pi / 2)
 CELLS = np.linspace(-1, 1, 41)  # of the contact: means over them are of no mesh
 
@@ -63,20 +55,20 @@ class Answer(NamedTuple):
     q: Array
     extremes: bool = False
 
-    def mirrored(self) -> "Answer":
+    def mirrored(self):
         """Of the mirror image: q is turned round as x is."""
         there = self.turned()
         return there._replace(ends=self.ends[[0, 2, 1]], x=-self.x[::-1], p=self.p[::-1], q=there.q[:, ::-1])
 
-    def turned(self) -> "Answer":
+    def turned(self):
         """With q turned round."""
         return self._replace(q=-self.q[::-1] if self.extremes else -self.q)
 
-    def scaled(self, length: float, stress: float) -> "Answer":
+    def scaled(self, length, stress):
         """In units that are so many times larger."""
         return self._replace(ends=self.ends / length, x=self.x / length, p=self.p / stress, q=self.q / stress)
 
-    def moved(self, shift: float) -> "Answer":
+    def moved(self, shift):
         """Moved along x."""
         return self._replace(ends=self.ends + np.array([0, -shift, shift]), x=self.x + shift)
 
@@ -88,12 +80,12 @@ class Apart(NamedTuple):
     ends: float
 
 
-def same(answer: Answer) -> Answer:
+def same(answer):
     """As it is."""
     return answer
 
 
-def answer(result: Result, scene: Scene, means: bool = False) -> Answer:
+def answer(result, scene, means=False):
     """A result's, at the nodes or cells in contact; of the exact method at any points; or as means over cells."""
     traction, ends = result.traction, np.array([result.a, result.m, result.n], float)
     if means:
@@ -106,7 +98,7 @@ def answer(result: Result, scene: Scene, means: bool = False) -> Answer:
     return Answer(ends, traction.x, traction.p, np.array(q), not scene.load.in_phase)
 
 
-def apart(one: Answer, other: Answer, f: float) -> Apart:
+def apart(one, other, f):
     a, p0 = one.ends[0], one.p.max()
     assert one.x.shape == other.x.shape
     assert np.abs(other.x - one.x).max() < 1e-3 * a
@@ -114,28 +106,28 @@ def apart(one: Answer, other: Answer, f: float) -> Apart:
     return Apart(float(max(tractions)), float(np.abs(other.ends - one.ends).max() / a))
 
 
-def scene_of(kind: str, *overrides: str) -> Scene:
+def scene_of(kind, *overrides):
     name, *settings = SCENES[kind]
     return load_scene(name, [*settings, *overrides])
 
 
-def loads(Q: Any, sigma: Any) -> tuple[str, ...]:
+def loads(Q, sigma):
     """Settings."""
     return tuple(f"load.{key}={np.asarray(values, float).tolist()}" for key, values in (("Q", Q), ("sigma", sigma)))
 
 
-def times(scene: Scene, Q: float = 1.0, sigma: float = 1.0) -> tuple[str, ...]:
+def times(scene, Q=1.0, sigma=1.0):
     """Settings of the scene's loads, times so much."""
     return loads(*(np.array(scene.load.points) * [Q, sigma]).T)
 
 
-def instead(owner: Any, name: str, called: Callable[..., Any]) -> Any:
+def instead(owner, name, called):
     """A patch for :func:`guise`: what is ``called`` in place of the ``owner``'s ``name``."""
     return patch.object(owner, name, Mock(side_effect=called))
 
 
 @contextmanager
-def guise(*patches: Any, own: bool = False) -> Iterator[None]:
+def guise(*patches, own=False):
     """Other meshes, or what else :func:`instead` patches: each of it must be called, as a patch that does not bite
     makes two guises one. Unless every run is to make its ``own`` meshes, march takes its first one only, finite
     elements are to be of :data:`SIZE`, and steps are those that are asked for: steps that are chosen differ in both, as
@@ -150,11 +142,11 @@ def guise(*patches: Any, own: bool = False) -> Iterator[None]:
             assert each.called, f"nothing calls {each.side_effect}: the guise changes nothing"
 
 
-def solved(method: str, scene: Scene, start: Any = None) -> Result:
+def solved(method, scene, start=None):
     return METHODS[method](scene, plan(scene, start=start is not None), start=start)
 
 
-def on_one_mesh(method: str, scene: Scene, start: Any = None) -> Result:
+def on_one_mesh(method, scene, start=None):
     """Solved in the steps that are asked for, on the one mesh that a :func:`guise` leaves."""
     found = solved(method, scene, start)
     assert found.counts.get("steps", 0) in {0, 1, scene.load.steps}, "steps are chosen"
@@ -162,20 +154,13 @@ def on_one_mesh(method: str, scene: Scene, start: Any = None) -> Result:
     return found
 
 
-def answered(method: str, scene: Scene, own: bool = False, *patches: Any) -> Answer:
+def answered(method, scene, own=False, *patches):
     """The answer to ``scene`` in a :func:`guise`."""
     with guise(*patches, own=own):
         return answer((solved if own else on_one_mesh)(method, scene), scene, own)
 
 
-def compared(
-    method: str,
-    scene: Scene,
-    other: Scene,
-    bring_back: Callable[[Answer], Answer] = same,
-    *patches: Any,
-    own: bool = False,
-) -> Apart:
+def compared(method, scene, other, bring_back=same, *patches, own=False):
     """How far ``other``, solved in a guise and brought back, is from ``scene``."""
     assert patches or scene != other
     one = answered(method, scene, own)
@@ -185,7 +170,7 @@ def compared(
 # -- scenes in another guise ------------------------------------------------------------------------------------------
 
 
-def in_units(scene: Scene, length: float, stress: float) -> tuple[str, ...]:
+def in_units(scene, length, stress):
     """Settings of the same scene in units that are so many times smaller."""
     material, profile, upper, load = scene.material, scene.profile, scene.bodies.upper, scene.load
     given = next(key for key in ("P", "a", "p0") if getattr(load, key) is not None)
@@ -203,21 +188,19 @@ def in_units(scene: Scene, length: float, stress: float) -> tuple[str, ...]:
     return (*(f"{key}={value}" for key, value in values.items()), *times(scene, length * stress, stress))
 
 
-def units(length: float, stress: float, method: str, kind: str, *settings: str, own: bool = False) -> Apart:
+def units(length, stress, method, kind, *settings, own=False):
     scene = scene_of(kind, *settings)
     other = scene_of(kind, *settings, *in_units(scene, length, stress))
     return compared(method, scene, other, lambda found: found.scaled(length, stress), own=own)
 
 
-def in_the_mirror(
-    width: float, contact: tuple[float, float], sizes: dict[float, float], growth: float, *rest: Any
-) -> Mesh:
+def in_the_mirror(width, contact, sizes, growth, *rest):
     """The mirror image of a block's mesh."""
     mesh = block(width, (-contact[1], -contact[0]), {-x: size for x, size in sizes.items()}, growth, *rest)
     return Mesh(mesh.points * [-1, 1], mesh.triangles[:, ::-1], mesh.lines)
 
 
-def mirror(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
+def mirror(method, kind, *settings, own=False):
     """x -> -x: Q is turned round, sigma is not."""
     scene = scene_of(kind, *settings)
     other = scene_of(kind, *settings, *times(scene, Q=-1))
@@ -225,7 +208,7 @@ def mirror(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
     return compared(method, scene, other, Answer.mirrored, *patches, own=own)
 
 
-def swap(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
+def swap(method, kind, *settings, own=False):
     """Upside down: the lower body is the upper one, which drags the other the other way. Of bodies that are alike that
     is to turn both loads round.
 
@@ -242,18 +225,18 @@ def swap(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
     return compared(method, scene, load_scene(name, [*before, *other]), Answer.turned, own=own)
 
 
-def substeps(steps: int, method: str, kind: str, *settings: str) -> Apart:
+def substeps(steps, method, kind, *settings):
     """From load point to load point in one step, or in several."""
     scene = scene_of(kind, *settings, "load.steps=1")
     return compared(method, scene, scene_of(kind, *settings, f"load.steps={steps}"))
 
 
-def the_first_mesh() -> Any:
+def the_first_mesh():
     """The finite elements of the first run in all that follow: where unlike bodies touch depends on the loads, too."""
     true_uniform = fem_method.uniform
-    first: list[Adapted] = []
+    first = []
 
-    def uniform(problem: ScaledProblem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
+    def uniform(problem, size, width, clock, *rest):
         if not first:
             first.append(true_uniform(problem, size, width, clock, *rest))
         return replace(first[0], solution=solving.solve_contact(problem, first[0].solution.bodies, 0, clock))
@@ -261,7 +244,7 @@ def the_first_mesh() -> Any:
     return instead(fem_method, "uniform", uniform)
 
 
-def restart(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
+def restart(method, kind, *settings, own=False):
     """Two cycles in steps of a third; saved to a file at the first load point and after every step of the cycle that
     follows, and read from there. Where each makes its ``own`` meshes, two stops will do: the second in mid-cycle."""
     whole = scene_of(kind, *settings, "load.cycles=2", "load.steps=3")
@@ -279,17 +262,17 @@ def restart(method: str, kind: str, *settings: str, own: bool = False) -> Apart:
         return apart(one, answer(rest, whole, own), whole.friction.f)
 
 
-def restart_of_cycles(method: str, *settings: str) -> Apart:
+def restart_of_cycles(method, *settings):
     """Two cycles of a varying pressure, or the second one from a file: only the last load point can be a stop."""
     loads = ("load.P=[9e4, 135750]", "load.Q=[1e4, 3e4]", "load.sigma=[2e7, 1e8]", "load.steps=3")
     first, whole = (load_scene("fretting-aluminium", [*loads, *settings, f"load.cycles={n}"]) for n in (1, 2))
     with guise(), tempfile.TemporaryDirectory() as folder:
         one, file = answer(on_one_mesh(method, whole), whole), Path(folder) / "state.npz"
-        on_one_mesh(method, first).state.save(file)  # type: ignore[union-attr]
+        on_one_mesh(method, first).state.save(file)
         return apart(one, answer(on_one_mesh(method, first, load_state(file)), first), whole.friction.f)
 
 
-def little_friction(f: float, method: str, kind: str, *settings: str) -> Apart:
+def little_friction(f, method, kind, *settings):
     """With loads in proportion to f, all is in proportion to it: as f goes to 0 nothing breaks down."""
     scene = scene_of(kind, *settings)
     part = f / scene.friction.f
@@ -297,7 +280,7 @@ def little_friction(f: float, method: str, kind: str, *settings: str) -> Apart:
     return compared(method, scene, other, lambda found: found._replace(q=found.q / part))
 
 
-def without_friction(f: float, method: str, kind: str, *settings: str) -> Apart:
+def without_friction(f, method, kind, *settings):
     """Contact and pressure with hardly any friction are those without."""
     scene = scene_of(kind, *settings)
     some = scene_of(kind, *settings, f"friction.f={f}", *times(scene, f / scene.friction.f, f / scene.friction.f))
@@ -310,14 +293,14 @@ def without_friction(f: float, method: str, kind: str, *settings: str) -> Apart:
 # -- problems in another guise ----------------------------------------------------------------------------------------
 
 
-def common_tension(tension: float, kind: str, *settings: str) -> Apart:
+def common_tension(tension, kind, *settings):
     """Both bodies stretched alike, by so many times what the scene's tension does to the lower one: what their finite
     elements, whose nodes do not match, say of the way their surfaces move is added to what the surfaces do."""
     scene = scene_of(kind, "fem.lower_size=0.7", *settings)
     true_compliances, true_march = solving.relative_compliances, coulomb.march
-    moved: list[tuple[Array, Array]] = []
+    moved = []
 
-    def compliances(halves: tuple[CondensedBody, ...], *rest: Any) -> Relative:
+    def compliances(halves, *rest):
         if len(halves[0].condensation.compliance) > len(halves[0].body.x):  # bodies that are only pressed do not shear
             lower, upper = (
                 stretched(half, part.kappa)
@@ -326,7 +309,7 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
             moved[:] = [(halves[0].body.x, lower - transfer(halves[0].body, halves[1].body) @ upper)]
         return true_compliances(halves, *rest)
 
-    def march(C: Array, stretch: Array, *rest: Any) -> Any:
+    def march(C, stretch, *rest):
         x, more = moved[0]
         nodes = np.searchsorted(x, stretch[0])  # where a body is stretched by one, it moves by x
         assert np.array_equal(x[nodes], stretch[0])
@@ -334,7 +317,7 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
 
     true_scaled = fem_method.scaled
 
-    def solved_back(*given: Any) -> ScaledProblem:  # factors are kept for stretched()
+    def solved_back(*given):  # factors are kept for stretched()
         return replace(true_scaled(*given), inside=True)
 
     patches = (
@@ -345,25 +328,24 @@ def common_tension(tension: float, kind: str, *settings: str) -> Apart:
     return compared("fem", scene, scene, same, *patches)
 
 
-def stretched(half: CondensedBody, kappa: float) -> Array:
+def stretched(half, kappa):
     """How the contact line's nodes move along x when the body, held at its sides and back, is stretched by one."""
     held = (half.body.held_points * [[1.0], [-(3 - kappa) / (1 + kappa)]]).reshape(-1, 1)
     moved = half.condensation._displace_free(np.zeros((half.body.contact.size, 1)), held)
-    result: Array = moved[-half.body.contact.size :, 0][: len(half.body.x)]
-    return result
+    return moved[-half.body.contact.size :, 0][: len(half.body.x)]
 
 
-def shifted(shift: float, approach: float, method: str, kind: str, *settings: str) -> Apart:
+def shifted(shift, approach, method, kind, *settings):
     """All that is there moved along x, by so many lengths of the problem, and the bodies apart before they meet. Both
     runs know as little of the contact before they solve on the last meshes."""
     scene = scene_of(kind, *settings)
     true_march, true_uniform = coulomb.march, fem_method.uniform
 
-    def moved(shift: float, approach: float) -> Any:
-        def march(C: Array, x: Array, *rest: Any) -> Any:
+    def moved(shift, approach):
+        def march(C, x, *rest):
             return true_march(C, x + shift, *rest)
 
-        def uniform(problem: ScaledProblem, size: float, width: float, clock: Clock, *rest: Any) -> Adapted:
+        def uniform(problem, size, width, clock, *rest):
             here = true_uniform(problem, size, width, clock, *rest).solution.bodies
             meshes = [replace(half.mesh, points=half.mesh.points + np.array([shift, 0])) for half in here]
             there = replace(
@@ -380,7 +362,7 @@ def shifted(shift: float, approach: float, method: str, kind: str, *settings: st
     return apart(one, other.moved(-shift * scene.length if method == "fem" else 0.0), scene.friction.f)
 
 
-def shuffled(seed: int, *args: Any) -> Mesh:
+def shuffled(seed, *args):
     """A block's mesh, its points, triangles, their corners and the edges of its lines in any order."""
     rng, mesh = np.random.default_rng(seed), block(*args)
     order = rng.permutation(len(mesh.points))
@@ -391,11 +373,11 @@ def shuffled(seed: int, *args: Any) -> Mesh:
     return Mesh(mesh.points[order], np.take_along_axis(triangles, turns, axis=1), lines)
 
 
-def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
+def reordered(seed, method, kind, *settings):
     """Nodes, elements and cells in any order."""
     true_march = coulomb.march
 
-    def march(C: Array, x: Array, normal: Array, f: Array, path: Any) -> History:
+    def march(C, x, normal, f, path):
         order = np.random.default_rng(seed).permutation(len(normal))
         return true_march(C[np.ix_(order, order)], x[:, order], normal[order], f[order], path).of(np.argsort(order))
 
@@ -404,7 +386,7 @@ def reordered(seed: int, method: str, kind: str, *settings: str) -> Apart:
     return compared(method, scene, scene, same, nodes if method == "fem" else cells)
 
 
-def many_loads(seed: int) -> Apart:
+def many_loads(seed):
     """Stick zones of many loads at once, in any order."""
     rng = np.random.default_rng(seed)
     pressed, order = halfplane.contact(scene_of("large tension")), rng.permutation(2000)
@@ -422,14 +404,9 @@ ALIKE = (*IN_PHASE, "out of phase")
 ROUNDING = {"exact": 1e-12, "march": 1e-11, "fem": 1e-9}  # compliances of fem are known to 1e-12 or so
 ACCURACY = 1e-3
 _QUICK = {  # of the scenes of a pair of fem's, the one that is no slow test; as a rule the one of mean loads
-    "mirror": "unlike bodies",
-    "swap of bodies": "unlike bodies",
-    "order of nodes and elements": "unlike bodies",
-    "units: 1e12": "large tension",
-    "units: 1e-12": "large tension",
-    "units: 1e12 m, 1e-12 Pa": "large tension",
-    "f = 1e-9, no friction": "large tension",
-    "f = 1e-9, loads in proportion": "large tension",
+    **dict.fromkeys(("mirror", "swap of bodies", "order of nodes and elements"), "unlike bodies"),
+    **dict.fromkeys(("units: 1e12", "units: 1e-12", "units: 1e12 m, 1e-12 Pa"), "large tension"),
+    **dict.fromkeys(("f = 1e-9, no friction", "f = 1e-9, loads in proportion"), "large tension"),
 }
 _ALL_QUICK = {"restart", "rigid shift"}  # what they find differs
 _UNITS = {"mm, MPa": (1e3, 1e-6), "1e12": (1e12, 1e12), "1e-12": (1e-12, 1e-12), "1e12 m, 1e-12 Pa": (1e12, 1e-12)}
@@ -446,21 +423,18 @@ class Trial(NamedTuple):
     slow: bool = False
 
 
-def trials() -> Iterator[Trial]:
+def trials():
     """Of every method, in scenes for which it is so: on one mesh, where rounding is all that is left; and on meshes
     that each run makes for itself."""
-    pairs: dict[str, tuple[Callable[..., Apart], tuple[str, ...]]] = {
+    pairs = {
         **{f"units: {name}": (partial(units, *factors), tuple(SCENES)) for name, factors in _UNITS.items()},
-        "mirror": (mirror, tuple(SCENES)),
-        "swap of bodies": (swap, tuple(SCENES)),
-        "7 sub-steps": (partial(substeps, 7), IN_PHASE[:3]),
-        "50 sub-steps": (partial(substeps, 50), IN_PHASE[:3]),
-        "restart": (restart, tuple(SCENES)),
-        "f = 1e-9, loads in proportion": (partial(little_friction, 1e-9), ALIKE),
+        "mirror": (mirror, tuple(SCENES)), "swap of bodies": (swap, tuple(SCENES)),
+        "7 sub-steps": (partial(substeps, 7), IN_PHASE[:3]), "50 sub-steps": (partial(substeps, 50), IN_PHASE[:3]),
+        "restart": (restart, tuple(SCENES)), "f = 1e-9, loads in proportion": (partial(little_friction, 1e-9), ALIKE),
         "f = 1e-9, no friction": (partial(without_friction, 1e-9), tuple(SCENES)),
         "rigid shift": (partial(shifted, 0.0123, 0.1), tuple(SCENES)),
         "order of nodes and elements": (partial(reordered, 1), tuple(SCENES)),
-    }
+    }  # fmt: skip
     for name, (run, kinds) in pairs.items():
         for method, bar in ROUNDING.items():
             # ten times f; nodes of high order that slip and stick again on the way, which a leg in one step leaves out
@@ -479,7 +453,7 @@ def trials() -> Iterator[Trial]:
     for kind in ALIKE:  # what cancels is ten times as large
         run = partial(common_tension, 10.0, kind, SIZE)
         yield Trial("common tension", "fem", kind, run, Apart(1e-8, 1e-8), kind != "large tension")
-    own: dict[str, tuple[Callable[..., Apart], tuple[str, ...]]] = {
+    own = {
         "units: mm, MPa": (partial(units, 1e3, 1e-6), ("large tension", "mean loads")),
         "mirror": (mirror, ("large tension", "mean loads")),
         "swap of bodies": (swap, ("unlike bodies",)),
@@ -494,6 +468,6 @@ def trials() -> Iterator[Trial]:
                 yield Trial(f"{name}; own meshes", method, kind, asked, bars, slow)
 
 
-def _has(method: str, kind: str) -> bool:
+def _has(method, kind):
     """Half-planes are alike; there is a closed form for loads in phase."""
     return kind in {"exact": IN_PHASE, "march": ALIKE, "fem": tuple(SCENES)}[method]

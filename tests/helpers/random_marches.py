@@ -96,20 +96,14 @@ def complaints(scene, result, marches):
 
 def followed(history, scene, result, shear):
     """Whether the result is that of the history: shear forces at load points 1 and 2, slip and dissipation."""
-    unit = scene.material.A * scene.P
-    return (
-        len(history.slip) == len(result.slip.slip)
-        and all(
-            (np.abs(T - q * scene.P) <= CERTIFIED * scene.friction.f * scene.P).all()
-            for T, q in zip(shear, history.at_ends, strict=True)
-        )
-        and np.allclose(result.slip.slip, history.slip * unit, SAME, SAME * unit * np.abs(history.slip).max())
-        # what load steps miss of the work is found later, and is not known to a march in steps
-        and (
-            history.path.missed is None
-            or np.isclose(result.slip.dissipated, history.dissipated * unit * scene.P, SAME, 0)
-        )
-    )
+    unit, bar = scene.material.A * scene.P, CERTIFIED * scene.friction.f * scene.P
+    if len(history.slip) != len(result.slip.slip):
+        return False
+    held = all((np.abs(T - q * scene.P) <= bar).all() for T, q in zip(shear, history.at_ends, strict=True))
+    slipped = np.allclose(result.slip.slip, history.slip * unit, SAME, SAME * unit * np.abs(history.slip).max())
+    # what load steps miss of the work is found later, and is not known to a march in steps
+    unknown, work = history.path.missed is None, history.dissipated * unit * scene.P
+    return held and slipped and (unknown or np.isclose(result.slip.dissipated, work, SAME, 0))
 
 
 def trials(numbers):

@@ -34,6 +34,15 @@ def sized(labels, left=None, rig=0.0, refused="", **methods):
     return Sized(labels=labels, run=solved.run, refused=refused, **more)
 
 
+NONE = {"p_max": 1.0, "m": None, "n": None}
+
+
+def on_mesh(labels, a, dofs=100, accuracy=1.0):
+    """Return a solved case whose half-width is ``a`` on a mesh of so many unknowns, without an estimate; exactly 1."""
+    fem = {"a": a, "estimate": {}, "counts": {"dofs": dofs}, **NONE}
+    return sized(labels | {"accuracy": accuracy}, fem=fem, exact={"a": 1.0, **NONE})
+
+
 def entries(name, found, failed=(), left=None, rig=0.0, remains=0.0):
     """Return solved cases along the axis ``name``: differences of a by size, and what is left with equivalent
     half-planes, text where there are none; the case that stands for an infinite size, with what ``remains`` of the
@@ -41,13 +50,12 @@ def entries(name, found, failed=(), left=None, rig=0.0, remains=0.0):
     if found and remains is not None:
         far = 100 * max(found)
         found, left = found | {far: remains}, left and left | {far: 0.0}
-    none = {"p_max": 1.0, "m": None, "n": None}
     solved = []
     for at, off in found.items():
         beside = (left or {}).get(at)
         more = {"refused": beside} if isinstance(beside, str) else {"left": beside, "rig": rig}
-        fem = {"a": 1 + off, "estimate": {"a": 3e-5}, "counts": {"dofs": 100}, **none}
-        solved.append(sized({name: at, "accuracy": 1.0}, fem=fem, exact={"a": 1.0, **none}, **more))
+        fem = {"a": 1 + off, "estimate": {"a": 3e-5}, "counts": {"dofs": 100}, **NONE}
+        solved.append(sized({name: at, "accuracy": 1.0}, fem=fem, exact={"a": 1.0, **NONE}, **more))
     return solved + [Sized(labels={name: at, "accuracy": 1.0}, error="too narrow") for at in failed]
 
 

@@ -3,7 +3,6 @@
 Truth is the contact and the stick zone of the exact state that a table was made from, with its own loads and f.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -18,7 +17,7 @@ from partialslip.halfplane.contact import contact
 from partialslip.halfplane.method import solve
 from partialslip.march.cells import compliance, forces, graded_cells
 from partialslip.result import Result
-from partialslip.scene import Friction, Scene
+from partialslip.scene import Friction
 from partialslip.scene.plan import plan
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
@@ -27,7 +26,7 @@ ROUNDING = 1e-9  # of a
 REACH = 1.1  # half-widths
 SHIFTED = 0.003  # of the half-width: points do not lie evenly about the middle
 DELTAS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)  # of penalty friction, in the largest slip
-SAMPLINGS: dict[str, int] = {"51": 51, "151": 151, "401": 401, "1001": 1001, "graded": 201}
+SAMPLINGS = {"51": 51, "151": 151, "401": 401, "1001": 1001, "graded": 201}
 
 
 @dataclass(frozen=True)
@@ -38,37 +37,35 @@ class Table:
     truth: Result
     order: int = 1
 
-    def times(self, **factors: float) -> "Table":
+    def times(self, **factors):
         """The table with some of its columns multiplied."""
         return replace(self, columns={name: column * factors.get(name, 1.0) for name, column in self.columns.items()})
 
 
 @cache
-def exact(scene: Scene) -> Result:
+def exact(scene):
     """The exact state of ``scene``."""
     return solve(scene, plan(scene))
 
 
-def sampled(scene: Scene, x: Array) -> Table:
+def sampled(scene, x):
     """The exact tractions at ``x``."""
     state = exact(scene)
     p, dq, *_ = state.traction.at(x)
     return Table({"x": x, "p": p, "dq": dq}, state)
 
 
-def points(state: Result, sampling: str) -> Array:
+def points(state, sampling):
     """Points over the contact and a little beyond: uniform ones, or as of a mesh graded to the ends of the zones."""
     count = SAMPLINGS[sampling]
     if sampling != "graded":
         return REACH * state.a * (np.linspace(-1, 1, count) + SHIFTED)
-    assert state.m is not None
-    assert state.n is not None
     ends = np.unique([-REACH, -1.0, -state.m / state.a, state.n / state.a, 1.0, REACH])
     ends = np.concatenate([ends[:1], ends[1:][np.diff(ends) > 0.02]])
     return graded_cells(ends + 0.0013, 0.004, 0.15) * state.a
 
 
-def changed(scene: Scene, *, P: float = 1.0, Q: float = 1.0, sigma: float = 1.0, f: float = 1.0) -> Scene:
+def changed(scene, *, P=1.0, Q=1.0, sigma=1.0, f=1.0):
     """``scene`` with some of its loads, or f, multiplied."""
     load = scene.load
     given = {"P": scene.P * P, "a": None, "p0": None}
@@ -78,18 +75,14 @@ def changed(scene: Scene, *, P: float = 1.0, Q: float = 1.0, sigma: float = 1.0,
 
 
 @cache
-def penalty(scene: Scene, softest: float = DELTAS[-1], stiffest: float = DELTAS[0]) -> dict[float, tuple[Array, Array]]:
+def penalty(scene, softest=DELTAS[-1], stiffest=DELTAS[0]):
     """x/a, and slip over delta there, where friction follows dq = 2 f p tanh(ds/delta), ds being the slip; by delta.
 
     Cells of constant shear traction on half-planes; delta is in the largest slip of Coulomb friction. Newton's
     method from soft to stiff: the slip is what the tension and a rigid shift make less the compliance times q.
     """
     state, pressed = exact(scene), contact(scene)
-    assert state.slip is not None
-    assert state.m is not None
-    assert state.n is not None
     path = load_path(scene, plan(scene))
-    assert path is not None
     (Q1, strain1, _), (Q2, strain2, _) = (path.cycle[end] for end in path.ends)
     ends = np.unique([-1.0, *np.clip([-state.m / state.a, state.n / state.a], -0.999, 0.999), 1.0])
     vertices = graded_cells(ends, 2e-4, 0.06)
@@ -103,11 +96,11 @@ def penalty(scene: Scene, softest: float = DELTAS[-1], stiffest: float = DELTAS[
     system = np.zeros((count + 1, count + 1))
     system[:count, count] = -1.0
 
-    def residual(slip: Array, shift: float, stiff: float) -> Array:
+    def residual(slip, shift, stiff):
         q = bound * np.tanh(slip)
         return np.append(stiff * slip + K @ q - stretch - shift, q.sum() - total)
 
-    found: dict[float, tuple[Array, Array]] = {}
+    found = {}
     steps = 10.0 ** np.arange(1.0, np.log10(stiffest) - 0.01, -0.25)
     for before, step in zip(np.append(steps[0], steps), steps, strict=False):
         stiff = step * scale
@@ -133,7 +126,7 @@ def penalty(scene: Scene, softest: float = DELTAS[-1], stiffest: float = DELTAS[
     return found
 
 
-def nodal(scene: Scene, x: Array, order: int) -> Table:
+def nodal(scene, x, order):
     """Nodal forces: integrals of the tractions times shape functions, by quadrature in an angle."""
     state, count = exact(scene), 40_000
     angle = (np.arange(count) + 0.5) * np.pi / count
@@ -149,13 +142,13 @@ def nodal(scene: Scene, x: Array, order: int) -> Table:
     return Table(columns, state, order)
 
 
-def averaged(table: Table, count: int) -> Table:
+def averaged(table, count):
     kernel = np.ones(count) / count
     smooth = {name: np.convolve(table.columns[name], kernel, "same") for name in ("p", "dq")}
     return replace(table, columns=table.columns | smooth)
 
 
-def _noisy(table: Table, f: float, size: float, seed: int) -> Table:
+def _noisy(table, f, size, seed):
     random, p0 = np.random.default_rng(seed), table.truth.p0
     off = size * p0 * random.standard_normal((2, len(table.columns["x"])))
     return replace(
@@ -163,7 +156,7 @@ def _noisy(table: Table, f: float, size: float, seed: int) -> Table:
     )
 
 
-def _rounded(table: Table, digits: int) -> Table:
+def _rounded(table, digits):
     return replace(
         table,
         columns={
@@ -173,7 +166,7 @@ def _rounded(table: Table, digits: int) -> Table:
     )
 
 
-def spoiled(scene: Scene, sampling: str, seed: int = 0) -> Iterator[tuple[str, str, Table]]:
+def spoiled(scene, sampling, seed=0):
     """Ways of spoiling, the size of each, and the table of ``scene`` at that sampling spoiled so."""
     x, f = points(exact(scene), sampling), scene.friction.f
     clean = sampled(scene, x)
@@ -229,14 +222,14 @@ class Reading:
     notes: tuple[str, ...]
 
     @property
-    def honest(self) -> bool:
+    def honest(self):
         """Whether errors are within three times their estimates, or m and n are not given and a note says why."""
         if self.errors is None or self.estimates is None:
             return bool(self.notes)
         return all(error <= 3 * own + ROUNDING for error, own in zip(self.errors, self.estimates, strict=True))
 
 
-def readings(scene: Scene, sampling: str, seed: int = 0) -> Iterator[Reading]:
+def readings(scene, sampling, seed=0):
     """Read every table of :func:`spoiled` as ``partialslip score`` does."""
     asked = exact(scene)
     for way, size, table in spoiled(scene, sampling, seed):
@@ -250,10 +243,10 @@ def readings(scene: Scene, sampling: str, seed: int = 0) -> Iterator[Reading]:
         given = found.m is not None and truth.m is not None
         off = tuple(abs(getattr(found, key) - getattr(truth, key)) / truth.a for key in "mn") if given else None
         own = tuple(found.estimate[key] for key in "mn") if given else None
-        yield Reading(way, size, off, own, spacing, found.notes)  # type: ignore[arg-type]
+        yield Reading(way, size, off, own, spacing, found.notes)
 
 
-def counts(read: list[Reading]) -> list[str]:
+def counts(read):
     """A table of counts by way and size: tables, those given, within a spacing, withheld, dishonest; and the median of
     estimate over error, both no less than rounding."""
     head = "way and size", "tables", "read", "in a spacing", "withheld", "beyond 3 est.", "median est./error"

@@ -10,14 +10,10 @@ from partialslip import load_scene
 from partialslip.result import Cost, Result, Traction, TractionAt
 
 # a of 0.8 and 1 mm at load points 1 and 2, stick zone (m, n) = (0.757106781187, 0.657106781187) mm
-SCENE = load_scene("hertz-small-tension").replace(
-    load={
-        "p0": None,
-        "P": (402123.8596594935, 628318.5307179586),
-        "Q": (-100530.96491487338, 100530.96491487338),
-        "sigma": (-40e6, 40e6),
-    }
-)
+SCENE = load_scene("hertz-small-tension").replace(load={
+    "p0": None, "P": (402123.8596594935, 628318.5307179586), "Q": (-100530.96491487338, 100530.96491487338),
+    "sigma": (-40e6, 40e6),
+})  # fmt: skip
 TURNED = SCENE.replace(load={key: getattr(SCENE.load, key)[::-1] for key in ("P", "Q", "sigma")})
 
 

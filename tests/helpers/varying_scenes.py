@@ -14,13 +14,8 @@ def varying(a, dQ, dsigma, e=(0.0, 0.0), mean=0.0, f=1.0, accuracy=1e-2, **load)
     }
     if any(e):
         loads["e"] = list(e)
-    return parse_scene(
-        {
-            "name": "varying",
-            "material": {"E": 4 * (1 - 0.3**2), "nu": 0.3},  # A = 1
-            "profile": {"kind": "hertz", "R": 1.0},
-            "friction": {"f": f},
-            "load": loads | load,
-            "fem": {"accuracy": accuracy},
-        }
-    )
+    return parse_scene({
+        "name": "varying", "material": {"E": 4 * (1 - 0.3**2), "nu": 0.3},  # A = 1
+        "profile": {"kind": "hertz", "R": 1.0}, "friction": {"f": f}, "load": loads | load,
+        "fem": {"accuracy": accuracy},
+    })  # fmt: skip

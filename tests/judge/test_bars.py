@@ -39,15 +39,10 @@ def test_no_bar_is_above_a_tenth(wrong):
         compare(result(), EXACT, SCENE, wrong)
 
 
-@pytest.mark.parametrize(
-    ("accuracy", "text"),
-    [
-        (2e-5, "within 2e-05 of a, 2e-04 of p, 3e-04 of q"),
-        (1e-3, "within 0.1 % of a, 1 % of p, 1.5 % of q"),
-        (0.02, "within 2 % of a, 10 % of p and q"),
-        ((1e-3, 0.02, 0.05), "within 0.1 % of a, m and n 2 %, 5 % of p and q"),
-    ],
-)
+@pytest.mark.parametrize(("accuracy", "text"), [
+    (2e-5, "within 2e-05 of a, 2e-04 of p, 3e-04 of q"), (1e-3, "within 0.1 % of a, 1 % of p, 1.5 % of q"),
+    (0.02, "within 2 % of a, 10 % of p and q"), ((1e-3, 0.02, 0.05), "within 0.1 % of a, m and n 2 %, 5 % of p and q"),
+])  # fmt: skip
 def test_what_was_asked_in_words(accuracy, text):
     assert asked(accuracy).text == text
 

@@ -9,7 +9,6 @@ from partialslip import compare, load_scene, plan
 from partialslip.halfplane import solve
 from partialslip.result import Traction, TractionAt
 from partialslip.run.judge import Outcome, cell_errors, cell_means
-from partialslip.tools.bars import CERTIFICATE_BAR
 
 SCENE = load_scene("hertz-large-tension")
 CELLS = np.array([-1.1, -0.9, -0.5, 0.1, 0.3, 0.97, 1.2])
@@ -33,13 +32,13 @@ def exact():
     return solve(SCENE, plan(SCENE))
 
 
-def with_cells(result, p_factor=lambda x: 1 + 0 * x, q_added=lambda x: 0 * x):
+def with_cells(result, q_added=lambda x: 0 * x):
     """Return the result of a method on a mesh, with perturbations."""
     scaled = np.linspace(-1.05, 1.05, 43) * result.a
 
     def at(x):
         p, dq, *_ = result.traction.at(x)
-        return TractionAt(p * p_factor(x / result.a), dq + 2 * q_added(x / result.a))
+        return TractionAt(p, dq + 2 * q_added(x / result.a))
 
     of = result.traction
     return replace(result, traction=replace(of, values=at(of.x), at=at, cells=scaled))
@@ -60,21 +59,6 @@ def test_cell_means_see_inner_breaks():
     assert means @ np.diff(CELLS) == pytest.approx(np.pi / 2 * (1 - 0.25), abs=1e-13)
 
 
-def test_a_result_equals_itself(exact):
-    comparison = compare(with_cells(exact), exact, SCENE, 1e-12)
-    assert comparison.passed
-    assert comparison.a == comparison.m == comparison.n == comparison.p == comparison.q == 0
-
-
-def test_scaled_pressure_is_measured_as_such(exact):
-    comparison = compare(with_cells(exact, p_factor=lambda x: 1.01 + 0 * x), exact, SCENE, 1e-4)
-    assert comparison.p == pytest.approx(0.01, rel=1e-10)
-    assert comparison.p_nodal == pytest.approx(0.01, rel=1e-10)
-    assert comparison.p_nodal_max == pytest.approx(0.01, rel=1e-2)
-    assert comparison.errors["P"] == pytest.approx(0.01, rel=1e-10)
-    assert comparison.missed == ("P: error 0.01 > 0.001", "p: error 0.01 > 0.001")
-
-
 @pytest.mark.fault
 def test_perturbation_that_keeps_the_resultant_is_seen(exact):
     """Deliberate fault: shear moved from one side to the other, resultant unchanged."""
@@ -85,42 +69,10 @@ def test_perturbation_that_keeps_the_resultant_is_seen(exact):
     assert comparison.q_nodal_max == pytest.approx(2e6 / (0.5 * exact.p0), rel=1e-3)
 
 
-@pytest.mark.parametrize("key", ["m", "n"])
-def test_a_shifted_end_is_measured_in_a(exact, key):
-    shift = 1e-3 * exact.a
-    centre = exact.stick_centre + (shift if key == "n" else -shift) / 2
-    moved = replace(exact, stick_centre=centre, stick_half_width=exact.stick_half_width + shift / 2)
-    comparison = compare(moved, exact, SCENE, 2e-5)
-    assert getattr(comparison, key) == pytest.approx(1e-3, rel=1e-9)
-    assert getattr(comparison, "n" if key == "m" else "m") == pytest.approx(0, abs=1e-15)
-    assert not comparison.passed
-
-
 def test_tiny_stick_zone_is_compared_without_cancellation(exact):
     tiny = replace(exact, stick_centre=-0.3 * exact.a, stick_half_width=1e-20 * exact.a)
     wider = replace(tiny, stick_half_width=3e-20 * exact.a)
     assert compare(wider, tiny, SCENE, 1e-12).m == pytest.approx(2e-20, rel=1e-9)
-
-
-def test_another_regime_is_missed(exact):
-    comparison = compare(replace(exact, regime="small tension"), exact, SCENE, 1e-4)
-    assert comparison.missed == ("regime: small tension, not large tension",)
-
-
-def test_a_solver_that_did_not_close_is_missed(exact):
-    open_ended = replace(exact, certificate={"kkt": 10 * CERTIFICATE_BAR}, last_cycle_change=1.0)
-    assert [what.split(":")[0].split()[1] for what in compare(open_ended, exact, SCENE, 1e-4).missed] == ["kkt"]
-    undefined = replace(exact, certificate={"equilibrium": float("nan")})
-    assert not compare(undefined, exact, SCENE, 1e-4).passed
-
-
-def test_no_shear_no_error_of_shear():
-    scene = load_scene("hertz-shear", ["load.Q=[0, 0]"])
-    result = solve(scene, plan(scene))
-    comparison = compare(with_cells(result), result, scene, 1e-4)
-    assert comparison.q == 0
-    assert comparison.q_nodal is None
-    assert comparison.passed
 
 
 def test_without_cells_the_spaces_between_points_are_cells(exact):
@@ -179,9 +131,8 @@ def test_what_the_reference_is_off_by_is_added_to_the_bar(exact, own, table, bar
 def test_nodes_that_all_lie_beyond_the_contact_have_no_relative_error(exact):
     elsewhere = replace(exact.traction, x=exact.traction.x + 3 * exact.a)
     elsewhere = replace(elsewhere, values=elsewhere.values._replace(p=0 * exact.traction.p))
-    comparison = compare(
-        replace(with_cells(exact), traction=replace(elsewhere, cells=exact.traction.x)), exact, SCENE, 1e-4
-    )
+    found = replace(with_cells(exact), traction=replace(elsewhere, cells=exact.traction.x))
+    comparison = compare(found, exact, SCENE, 1e-4)
     assert comparison.p_nodal is None
     assert comparison.p_nodal_max == 0
 

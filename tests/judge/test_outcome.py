@@ -1,10 +1,12 @@
 """The rule by which verdicts on quantities become one: passed, missed or not judged. Nothing is solved."""
 
+import itertools
 from dataclasses import replace
+from typing import get_args
 
 import pytest
-from rule import STICKS, asks_every_question, verdicts
 
+from partialslip.result import Regime
 from partialslip.run.judge import NO_BAR, Conclusion, Outcome, Verdict, conclude, of_run, together
 from partialslip.run.judge import verdicts as module
 from partialslip.run.judge.verdicts import headline
@@ -12,24 +14,31 @@ from partialslip.tools.bars import BARS
 
 PASSED, MISSED, NOT_JUDGED = Outcome.PASSED, Outcome.MISSED, Outcome.NOT_JUDGED
 SOUND = Verdict("finite", PASSED)
+SLIDES, STICKS = {"regime", "a", "p", "q"}, {"a", "m", "n", "p", "q", "q1", "q2"}
+QUESTIONS = {  # what a verdict on a contact in a regime must answer
+    regime: {"sliding": SLIDES, "frictionless": SLIDES, "ratchets": {"regime", *STICKS}}.get(regime, STICKS)
+    for regime in get_args(Regime)
+}
 
 
-@pytest.mark.parametrize(
-    ("regime", "asked"),
-    [
-        *((regime, ("a", "m", "n", "p", "q")) for regime in STICKS),
-        ("sliding", ("regime", "a", "p", "q")),
-        ("frictionless", ("regime", "a", "p", "q")),
-        ("ratchets", ("regime", "a", "m", "n", "p", "q")),
-    ],
-)
-def test_every_regime_has_its_questions(regime, asked):
-    assert headline([Verdict("regime", PASSED, regime, regime)]) == asked
-    assert headline([]) == headline([Verdict("regime", PASSED)]) == ("regime", "a", "m", "n", "p", "q")
+def verdicts(regime, unjudged=(), missed=()):
+    """Return verdicts on all quantities: passed but for those ``unjudged`` and ``missed``."""
+    keys = ["a", "left", "right", "P", "p", "dQ", "q", *sorted({"m", "n", "q1", "q2"} & QUESTIONS[regime])]
+    outcome = dict.fromkeys(missed, MISSED) | dict.fromkeys(unjudged, NOT_JUDGED)
+    found = [Verdict(key, outcome.get(key, PASSED), error=0.0, bar=1.0) for key in keys]
+    return [*found, Verdict("regime", outcome.get("regime", PASSED), regime, regime)]
 
 
-def test_every_regime_asks_every_question():
-    asks_every_question()
+def asks_every_question():
+    """Check, in every regime and for every set of headline quantities not judged or absent, that only all pass."""
+    for regime, asked in QUESTIONS.items():
+        for some in itertools.chain.from_iterable(itertools.combinations(sorted(asked), k) for k in range(4)):
+            found = conclude(verdicts(regime, unjudged=some))
+            assert found.outcome is (NOT_JUDGED if some else PASSED), (regime, some)
+            assert set(found.unjudged) == set(some), (regime, some)
+            if not set(some) & {"q1", "q2", "regime"}:
+                lost = [each for each in verdicts(regime) if each.quantity not in some]
+                assert set(conclude(lost).unjudged) == set(some), (regime, some)
 
 
 @pytest.mark.parametrize("key", ["left", "right", "left_1", "right_1", "left_2", "right_2", "p_1", "q1", "q2"])
@@ -82,46 +91,33 @@ def test_quantities_may_be_waived():
 
 
 ALL, SOME, BAD, NONE = (
-    Conclusion(PASSED),
-    Conclusion(NOT_JUDGED, unjudged=("m", "n")),
-    Conclusion(MISSED, missed=("q: error 2 > 1",), unjudged=("n",)),
-    Conclusion(NOT_JUDGED, asked=False),
-)
+    Conclusion(PASSED), Conclusion(NOT_JUDGED, unjudged=("m", "n")),
+    Conclusion(MISSED, missed=("q: error 2 > 1",), unjudged=("n",)), Conclusion(NOT_JUDGED, asked=False),
+)  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("each", "outcome", "unjudged", "asked"),
-    [
-        ([ALL, ALL], PASSED, (), True),
-        ([ALL, NONE], PASSED, (), True),
-        ([ALL, SOME], NOT_JUDGED, ("m", "n"), True),
-        ([SOME, SOME], NOT_JUDGED, ("m", "n"), True),
-        ([ALL, SOME, BAD], MISSED, ("m", "n"), True),
-        ([NONE], NOT_JUDGED, (), False),
-        ([replace(NONE, outcome=MISSED, missed=("x",)), ALL], MISSED, (), True),
-        ([], NOT_JUDGED, (), False),
-    ],
-)
+@pytest.mark.parametrize(("each", "outcome", "unjudged", "asked"), [
+    ([ALL, ALL], PASSED, (), True), ([ALL, NONE], PASSED, (), True), ([ALL, SOME], NOT_JUDGED, ("m", "n"), True),
+    ([SOME, SOME], NOT_JUDGED, ("m", "n"), True), ([ALL, SOME, BAD], MISSED, ("m", "n"), True),
+    ([NONE], NOT_JUDGED, (), False), ([replace(NONE, outcome=MISSED, missed=("x",)), ALL], MISSED, (), True),
+    ([], NOT_JUDGED, (), False),
+])  # fmt: skip
 def test_several_pass_if_all_that_had_bars_pass(each, outcome, unjudged, asked):
     found = together(each)
     assert (found.outcome, found.unjudged, found.asked) == (outcome, unjudged, asked)
     assert found.missed == tuple(text for one in each for text in one.missed)
 
 
-@pytest.mark.parametrize(
-    ("compared", "hold", "outcome"),
-    [
-        ({"fem": ALL}, {"exact": True, "fem": True}, PASSED),
-        ({"fem": ALL, "exact": SOME}, {"march": True, "fem": True, "exact": False}, PASSED),
-        ({"fem": SOME, "exact": SOME}, {"march": True, "fem": True, "exact": False}, NOT_JUDGED),
-        ({"fem": ALL, "march": SOME}, {"exact": True, "fem": True, "march": True}, NOT_JUDGED),
-        ({"fem": ALL, "exact": BAD}, {"march": True, "fem": True, "exact": False}, MISSED),
-        ({"exact": ALL}, {"march": True, "exact": False}, NOT_JUDGED),
-        ({"exact": SOME}, {"march": True, "exact": False}, NOT_JUDGED),
-        ({"fem": NONE}, {"fem": True, "exact": True}, NOT_JUDGED),
-        ({}, {"exact": True}, NOT_JUDGED),
-    ],
-)
+@pytest.mark.parametrize(("compared", "hold", "outcome"), [
+    ({"fem": ALL}, {"exact": True, "fem": True}, PASSED),
+    ({"fem": ALL, "exact": SOME}, {"march": True, "fem": True, "exact": False}, PASSED),
+    ({"fem": SOME, "exact": SOME}, {"march": True, "fem": True, "exact": False}, NOT_JUDGED),
+    ({"fem": ALL, "march": SOME}, {"exact": True, "fem": True, "march": True}, NOT_JUDGED),
+    ({"fem": ALL, "exact": BAD}, {"march": True, "fem": True, "exact": False}, MISSED),
+    ({"exact": ALL}, {"march": True, "exact": False}, NOT_JUDGED),
+    ({"exact": SOME}, {"march": True, "exact": False}, NOT_JUDGED),
+    ({"fem": NONE}, {"fem": True, "exact": True}, NOT_JUDGED), ({}, {"exact": True}, NOT_JUDGED),
+])  # fmt: skip
 def test_a_run_passes_if_every_result_that_claims_to_hold_passes(compared, hold, outcome):
     missed = [f"{name}: {text}" for name, each in compared.items() for text in each.missed]
     found = of_run(compared, missed, hold)
@@ -133,25 +129,18 @@ def test_a_run_passes_if_every_result_that_claims_to_hold_passes(compared, hold,
     assert found.unjudged == (("m", "n") if outcome is NOT_JUDGED and SOME in compared.values() else ())
 
 
-def any_passes(_):
-    """Ask for nothing: a pass in anything passes all."""
-    return ()
-
-
-def never_a_regime(_):
-    """Ask for a stick zone's ends only, whatever the regime."""
-    return ("a", "m", "n", "p", "q")
-
-
-def without_levels(verdicts, true=headline):
-    """Forget the shear at the load points."""
-    return tuple(key for key in true(verdicts) if key not in ("q1", "q2"))
+FORGETFUL = {
+    "a pass in anything passes all": lambda _: (),
+    "never the regime": lambda _: ("a", "m", "n", "p", "q"),
+    "no shear at load points": lambda given, true=headline: tuple(
+        key for key in true(given) if key not in ("q1", "q2")
+    ),
+}
 
 
 @pytest.mark.fault
-@pytest.mark.parametrize("fault", [any_passes, never_a_regime, without_levels])
+@pytest.mark.parametrize("fault", FORGETFUL.values(), ids=FORGETFUL)
 def test_a_rule_that_forgets_a_question_is_caught(fault, monkeypatch):
-
     asks_every_question()
     monkeypatch.setattr(module, "headline", fault)
     with pytest.raises(AssertionError):

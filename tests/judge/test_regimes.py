@@ -18,37 +18,6 @@ def zone(left, right, regime):
     return replace(EXACT, regime=regime, stick_centre=(left + right) / 2 * A, stick_half_width=(right - left) / 2 * A)
 
 
-def widths(of):
-    (left, right), _ = of.ends
-    return -of.m - left, right - of.n
-
-
-@pytest.mark.parametrize(
-    ("names", "left", "right", "which", "words"),
-    [
-        (("small tension", "large tension"), -0.9, 0.5, min, "a slip zone is narrower"),
-        (("small tension", "sticking ends"), -0.9, 0.5, min, "a slip zone is narrower"),
-        (("no slip", "large tension"), -0.9, 0.5, min, "a slip zone is narrower"),
-        (("small tension", "stuck"), -0.9, 0.8, max, "both slip zones are narrower"),
-    ],
-)
-def test_a_zone_that_is_as_narrow_as_the_bar_tells_no_regime(names, left, right, which, words):
-    one = zone(left, right, names[0])
-    other = replace(one, regime=names[1])
-    width = which(widths(one))
-    assert _too_near(other, one, width).startswith(words)
-    assert _too_near(one, other, width).startswith(words)
-    assert _too_near(other, one, width * NEXT) == ""
-
-
-@pytest.mark.parametrize("names", [("small tension", "large tension"), ("small tension", "sliding")])
-def test_so_does_a_narrow_stick_zone(names):
-    one = zone(0.1, 0.2, names[0])
-    other = replace(one, regime=names[1])
-    assert _too_near(other, one, one.stick_half_width) == "the stick zone is narrower than the bar"
-    assert _too_near(other, one, one.stick_half_width * NEXT) == ""
-
-
 def test_what_has_no_zone_is_near_to_nothing():
     for lost in ({"stick_centre": None}, {"stick_half_width": None}):
         none = replace(EXACT, **lost)

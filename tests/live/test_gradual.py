@@ -113,7 +113,3 @@ def test_a_rounded_middle_shows():
     """Fault: the page integrates over that one point, between places that rounding puts apart."""
     wrong = lambda text: text.replace("ends[1] - ends[0] > SETTLED", "ends[1] > ends[0]")  # noqa: E731
     assert None in answered(BOUND, np.linspace(0.5, 12, 47).tolist(), wrong)
-
-
-def test_the_table_on_the_page_is_small():
-    assert len(json.dumps(live._gradual_table())) < 60_000

@@ -1,4 +1,4 @@
-"""The block recipe, and what is written through meshio."""
+"""The block recipe, fans at the contact line, and what is written through meshio."""
 
 import gmsh
 import meshio
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from partialslip.result import DeformedBody
-from partialslip_meshes import block
+from partialslip_meshes import block, fanned
 from partialslip_meshes.write import write_msh, write_vtu
 
 POINTS = {-1.0: 0.01, -0.8: 0.01, 0.2: 0.02, 1.0: 0.01}
@@ -94,3 +94,32 @@ def test_vtu_holds_both_bodies(bodies, tmp_path):
     n = len(bodies[0].points)
     assert back.point_data["displacement_2"][:n, :2] == pytest.approx(bodies[0].displacements["displacement_2"])
     assert (areas(back.points[:, :2], back.cells_dict["triangle"]) > 0).all()
+
+
+@pytest.fixture(scope="module")
+def coarse():
+    return block(4.0, (-1.0, 1.0), {-0.4: 0.01, 0.7: 0.02}, 0.7)
+
+
+def at_vertices(mesh):
+    """Number of triangles at each vertex inside the contact line."""
+    ends, counts = np.unique(mesh.lines["contact"], return_counts=True)
+    return np.bincount(mesh.triangles.ravel())[ends[counts == 2]]
+
+
+def test_at_least_three_triangles_meet_at_the_contact_line_and_nothing_else_is_split(coarse):
+    split, few = fanned(coarse), int((at_vertices(coarse) == 2).sum())
+    assert (at_vertices(coarse).min(), at_vertices(split).min()) == (2, 3)
+    assert 0 < len(split.points) - len(coarse.points) <= few
+    assert fanned(split).triangles is split.triangles
+
+
+def test_the_block_with_fans_is_the_same(coarse):
+    split = fanned(coarse)
+    before, after = (areas(each.points, each.triangles) for each in (coarse, split))
+    assert (after > 0).all()
+    assert after.sum() == pytest.approx(before.sum(), rel=1e-12)
+    assert (split.points[: len(coarse.points)] == coarse.points).all()
+    assert all((split.lines[name] == coarse.lines[name]).all() for name in coarse.lines)
+    # a mesh without hanging vertices: Euler's formula for a disc
+    assert len(split.points) - len(np.unique(split.edges, axis=0)) + len(split.triangles) == 1

@@ -9,7 +9,7 @@ import pytest
 from refusing import line_of
 
 from partialslip_meshes import quad_block, read
-from partialslip_meshes.write import write_body, write_quads
+from partialslip_meshes.write import write_quads
 
 FIELD = "bodies.lower.mesh"
 GROUPS = {"back": 0, "right": 1, "contact": 3, "left": 5}
@@ -104,15 +104,3 @@ def test_what_a_file_has_is_told(both):
     assert "must have a group 'contact'" in told
     assert "the file has flat-contact, flat-face, flat-back" in told
     assert "type groups = { contact = ... }" in told
-
-
-@pytest.mark.parametrize("suffix", [".msh", ".inp", ".vtu", ".med"])
-def test_what_the_benchmark_writes_is_read(tmp_path, suffix):
-    if suffix == ".med":
-        pytest.importorskip("h5py")
-    mesh = quad_block(4.0, (-1.0, 1.0), {0.0: 0.4}, 0.4, 2.0)
-    write_body(tmp_path / f"body{suffix}", mesh)
-    found = read(FIELD, str(tmp_path / f"body{suffix}"))
-    assert {name: len(edges) for name, edges in found.lines.items()} == {
-        name: len(edges) for name, edges in mesh.lines.items()
-    }

@@ -51,12 +51,6 @@ def test_the_file_has_the_units_of_the_scene():
     assert loop_csv(ran()) == ""
 
 
-def test_load_points_between_which_Q_stays_are_not_told():
-    """P or the tension alone changes there: Q does not tell where a way ends."""
-    stays = replace(plates(40), at_points=np.array([1.0, 1.0, -1.0]))
-    assert all(line.endswith(",") for line in loop_csv(ran(plates=stays)).splitlines()[1:])
-
-
 def test_files_and_page_of_finite_bodies_have_the_loop(tmp_path):
     def written(folder, **changes):
         write_run(ran(**changes), folder)

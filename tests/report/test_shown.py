@@ -6,7 +6,7 @@ import pytest
 import partialslip
 from partialslip import halfplane
 from partialslip.report import record
-from partialslip.scene import Load, Tabulated
+from partialslip.scene import Tabulated
 from partialslip.study.map import stick_map
 
 SCENE = partialslip.load_scene("hertz-large-tension", ["fem.accuracy=1e-2"])
@@ -36,15 +36,6 @@ def test_a_run_is_its_results_and_comparisons(run):
     assert lines[3].startswith(
         f"  Comparison: all bars met; errors in a: a 0.0e+00, m {run.comparisons['march'].m:.1e}, n "
     )
-
-
-def test_scenes_and_plans(run):
-    assert repr(SCENE).splitlines()[::5] == [f"Scene {SCENE.name}: {SCENE.title}", "  Fem(accuracy=0.01)"]
-    assert "Friction(f=0.5)" in repr(SCENE)
-    assert repr(Load(P=1e5, Q=[-1, 1])) == "Load(P=100000, Q=(-1, 1))"
-    called_for, left_out = repr(run.plan).removeprefix("Plan: called for ").split("; left out ")
-    assert called_for.split(", ") == list(run.plan.called_for)
-    assert left_out.split(", ") == list(run.plan.left_out)
 
 
 def test_many_numbers_are_a_shape_and_a_range(run):

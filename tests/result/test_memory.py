@@ -7,8 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import partialslip
-from partialslip.report import rows
 from partialslip.result import Clock
 from partialslip.result import cost as memory
 
@@ -65,10 +63,3 @@ def test_a_system_that_reports_nothing(monkeypatch):
     cost = Clock().cost()
     assert (cost.peak_rss_mb, cost.peak_rss_unknown) == (None, "this system does not report it")
     assert memory.process_peak_mb() is None
-
-
-def test_wall_time_and_memory_are_named():
-    result = partialslip.run(partialslip.load_scene("hertz-shear"), ["exact"]).results["exact"]
-    text = rows.cost(result)
-    assert f"{result.cost.wall_s:.3f} s wall time, peak memory " in text
-    assert text.endswith(" MB before the method)") or "not known" in text

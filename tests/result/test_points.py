@@ -1,8 +1,5 @@
 """Functions of points take numbers, lists and arrays of any shape."""
 
-from dataclasses import replace
-
-import known
 import numpy as np
 import pytest
 
@@ -102,9 +99,3 @@ def test_points_that_are_none_are_refused_in_one_line(exact):
             exact.traction.at(*points)
     with pytest.raises(partialslip.InputError, match="shapes that fit"):
         exact.stress_at([0, 0], [0, 0, 0])
-
-
-def test_a_changed_traction_is_wrapped_once():
-    once = replace(known.traction(), cells=None)
-    assert once.at == replace(once, cells=None).at
-    assert once.at(0).levels[1] == pytest.approx(known.tractions(0.0)[1] / 2)

@@ -22,13 +22,11 @@ FAST = ["fem.accuracy=1e-2"]
 SCENES = [
     ("hertz-large-tension", [], ("exact", "march", "fem")),
     pytest.param(("flat-rounded", [], ("exact", "march", "fem")), marks=pytest.mark.slow),
-    pytest.param(
-        ("fretting-aluminium", ["load.Q=[5e3,3e4]", "load.sigma=[0,1e8]"], ("exact", "march", "fem")),
-        marks=pytest.mark.slow,
-    ),
+    pytest.param(("fretting-aluminium", ["load.Q=[5e3,3e4]", "load.sigma=[0,1e8]"], ("exact", "march", "fem")),
+     marks=pytest.mark.slow),
     ("flat-rounded", ["profile={kind='tabulated',x=[0,1e-3,2e-3,4e-3],gap=[0,1e-5,4e-5,2e-4]}"], ("exact", "fem")),
     pytest.param(("hertz-shear", ["material.upper={E=210e9,nu=0.3}"], ("fem",)), marks=pytest.mark.slow),
-]
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module", params=SCENES, ids=lambda each: f"{each[0]} {' '.join(each[1])}"[:40])
@@ -101,16 +99,11 @@ def test_the_schema_that_is_published_is_that_of_the_types():
     assert unversioned(published) == unversioned(json.loads(json.dumps(schema())))
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (b"[]", "must be a results.json"),
-        (b"{}", f"schema = '': must be '{SCHEMA}'"),
-        (b'{"schema": "partialslip/result/2"}', "run the scene again"),
-        (b'{"schema": 3}', "must be a results.json"),
-        (f'{{"schema": "{SCHEMA}"}}'.encode(), ": missing"),
-    ],
-)
+@pytest.mark.parametrize(("text", "said"), [
+    (b"[]", "must be a results.json"), (b"{}", f"schema = '': must be '{SCHEMA}'"),
+    (b'{"schema": "partialslip/result/2"}', "run the scene again"), (b'{"schema": 3}', "must be a results.json"),
+    (f'{{"schema": "{SCHEMA}"}}'.encode(), ": missing"),
+])  # fmt: skip
 def test_a_file_that_is_none_is_refused_in_one_line(text, said, tmp_path):
     path = tmp_path / "results.json"
     path.write_bytes(text)

@@ -13,7 +13,7 @@ from partialslip.study import cost
 from partialslip.study.batch.job import Job, ProcessCost, solve_apart
 from partialslip.study.batch.job import _timing_settled as known
 from partialslip.study.batch.ledger import Ledger
-from partialslip.study.cost import errors_svg, phases_svg
+from partialslip.study.cost import phases_svg
 
 SCENE = partialslip.load_scene("hertz-large-tension")
 
@@ -31,6 +31,12 @@ def test_the_ladder_is_of_every_kind():
     assert orders == {1, 2, 3, 4, 6}
     assert {case.scene.fem.far_field for case in cases} == {"half-plane", "box"}
     assert any(case.scene.fem.size for case in cases)
+    labels = [case.labels for case in cases]
+    assert {str(label["setting"]).split()[0] for label in labels if label["setting"]} == {"accuracy", "h"}
+    assert [label["series"] for label in labels if not label["setting"]] == ["exact"]
+    names = [case.labels["series"] for case in cost.ladder(SCENE)]  # the coarsest setting of each series first
+    assert (names[:5], {*names}) == (list(cost.USUAL), {*cost.USUAL})
+    assert {case.methods for case in cost.ladder(SCENE, ("march",))} == {("exact", "march")}
     unlike = partialslip.load_scene("hertz-shear", ["material.upper={E=1e9, nu=0.3}"])
     with pytest.raises(partialslip.InputError, match="needs the exact method"):
         cost.ladder(unlike)
@@ -95,12 +101,6 @@ def test_a_budget_ends_in_the_order_of_the_ladder(tmp_path, study):
     assert _progress(1, 4, "march", 12.3) == "setting 2 of 4: march, 12 CPU s left"
 
 
-def test_the_ladder_takes_the_coarsest_setting_of_each_series_first():
-    names = [case.labels["series"] for case in cost.ladder(SCENE)]
-    assert names[:5] == list(cost.USUAL)
-    assert {*names} == {*cost.USUAL}
-
-
 def test_seconds_of_a_solution_are_the_smallest_that_are_known():
     """Alone nothing tells how much of a solution is imports, unless it is long."""
     assert not known([0.3])
@@ -129,17 +129,6 @@ def test_the_answer_is_the_cheapest_setting_that_does():
     assert _answer(cost.front(points), 1e-9) == ["best: 1.0e-08 a by fem, adapted, , in 2 CPU s"]
 
 
-def test_a_ladder_is_of_the_methods_asked_for():
-    assert {case.methods for case in cost.ladder(SCENE, ("march",))} == {("exact", "march")}
-    assert {case.labels["series"] for case in cost.ladder(SCENE, ("exact",))} == {"exact"}
-
-
-def test_every_setting_says_what_it_is():
-    labels = [case.labels for case in cost.ladder(SCENE, every=True)]
-    assert {str(label["setting"]).split()[0] for label in labels if label["setting"]} == {"accuracy", "h"}
-    assert [label["series"] for label in labels if not label["setting"]] == ["exact"]
-
-
 def test_the_front_is_what_nothing_beats():
     points = [point("P4", 1.0, 1e-3), point("P4", 2.0, 1e-5), point("P1", 3.0, 1e-2), point("P1", 0.5, 1e-1)]
     assert [found.cpu_s for found in cost.front(points)] == [0.5, 1.0, 2.0]
@@ -148,9 +137,6 @@ def test_the_front_is_what_nothing_beats():
 def test_exponents_of_power_laws_are_found():
     points = [point("P4", 1e-6 * n**1.5, 7.0 * n**-2.0, n) for n in (100, 1000, 10_000)]
     assert cost.slopes(points)["P4"] == pytest.approx({"m, n": -2, "q": -2, "CPU": 1.5})
-
-
-def test_meshes_alike_tell_no_exponent():
     assert math.isnan(cost.slopes([point("P4", 1.0, 1e-3, 1000), point("P4", 1.1, 1e-5, 1010)])["P4"]["CPU"])
 
 
@@ -163,17 +149,6 @@ def test_panels_of_phases_without_data_are_left_out():
     both = phases_svg([point("P4, adapted", 1.0, 1e-3), point("P4, adapted", 4.0, 1e-5, 4000)], "two")
     assert {"CPU s of the process", "CPU s of the method", "P4, adapted: 1.00"} <= {*texts(both)}
     assert phases_svg([replace(point("exact", 1.0, 0.0), counts={})], "none") == ""
-
-
-def test_seconds_have_plain_labels_that_do_not_touch():
-    """A short axis has three labels in a decade, a long one the powers of ten alone."""
-    short, long = (
-        texts(errors_svg([point("P4", least, 1e-3), point("P4", most, 1e-5)], [], "one", 1e-4))
-        for least, most in ((0.55, 3.9), (0.55, 800.0))
-    )
-    assert {"1", "2"} <= {*short}
-    assert {"1", "10", "100"} <= {*long}
-    assert not {"2", "20"} & {*long}
 
 
 def test_a_peer_is_met_at_its_best_error_and_in_its_time():

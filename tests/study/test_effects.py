@@ -15,7 +15,7 @@ from partialslip.friction.coulomb_constant_pressure import march as follow_path
 from partialslip.friction.load_path import Path, stretched
 from partialslip.march import method as marching
 from partialslip.scene.plan import reduced
-from partialslip_fem import Kept, bodies, condensation, solving
+from partialslip_fem import bodies, condensation, solving
 from partialslip_fem import method as fem_method
 
 SIZE = "fem.size=0.1"
@@ -30,23 +30,18 @@ EQUAL = ("bodies.lower.width=30e-3", "bodies.lower.height=10e-3", "bodies.upper.
 
 # From frictionless Hertz to two different finite bodies with mean loads and stresses inside.
 SIX = {
-    "frictionless": (("friction.f=0", "load.Q=[0, 0]"), False),
-    "shear": ((), False),
-    "large tension": ((LARGE,), False),
-    "mean loads, small tension": ((*MEAN, "load.sigma=[0, 1e8]"), False),
-    "unlike half-planes": ((*STIFF, SMALLER), False),
-    "everything": ((*STIFF, *BLOCKS, *MEAN, LARGE), True),
-}
+    "frictionless": (("friction.f=0", "load.Q=[0, 0]"), False), "shear": ((), False),
+    "large tension": ((LARGE,), False), "mean loads, small tension": ((*MEAN, "load.sigma=[0, 1e8]"), False),
+    "unlike half-planes": ((*STIFF, SMALLER), False), "everything": ((*STIFF, *BLOCKS, *MEAN, LARGE), True),
+}  # fmt: skip
 
 # Counted work of an effect: zero if the effect is left out.
 WORK = {
     "friction": lambda counts: counts["tangential_unknowns"] + counts["load_steps"] + counts["friction_iterations"],
-    "opposing-slip": lambda counts: counts["opposing_nodes"],
-    "history": lambda counts: counts["cycles"],
+    "opposing-slip": lambda counts: counts["opposing_nodes"], "history": lambda counts: counts["cycles"],
     "coupling": lambda counts: counts["bodies"] - 1 + counts["normal_solves"] - 1,
-    "far-field": lambda counts: counts["far_field_columns"],
-    "subsurface": lambda counts: counts["back_solves"],
-}
+    "far-field": lambda counts: counts["far_field_columns"], "subsurface": lambda counts: counts["back_solves"],
+}  # fmt: skip
 
 
 def solved_fem(*overrides, subsurface=False):
@@ -86,10 +81,10 @@ def spied(monkeypatch):
         monkeypatch.setattr(owner, name, counted)
 
     spy(condensation, "factor", "factor")
-    spy(bodies, "half_plane", "half_plane")
-    spy(bodies, "press", "press")
-    spy(solving.coulomb_constant_pressure, "march", "march")
-    spy(solving.coulomb_coupled, "march", "coupled")
+    for name in ("half_plane", "press"):
+        spy(bodies, name, name)
+    for owner, key in ((solving.coulomb_constant_pressure, "march"), (solving.coulomb_coupled, "coupled")):
+        spy(owner, "march", key)
     spy(condensation.Condensation, "displace", "displace")
     return calls
 
@@ -212,13 +207,6 @@ def test_no_friction_without_a_load_along_x():
     assert_same(none, solved)
 
 
-def test_pressure_does_not_need_the_shear_columns():
-    alone, with_shear = fem("friction.f=0"), fem()
-    assert alone.regime == "sliding"
-    assert alone.a == pytest.approx(with_shear.a, rel=1e-10)
-    assert alone.traction.p == pytest.approx(with_shear.traction.p, abs=1e-9 * with_shear.p0)
-
-
 def test_what_slides_is_not_iterated():
     for result in (fem("friction.f=0.01"), march("friction.f=0.01")):
         assert result.regime == "sliding"
@@ -318,14 +306,6 @@ def test_coupling_left_out_is_the_uncoupled_solution():
     assert without.counts["bodies"] == 2
     assert 1e-4 < abs(without.a - unlike.a) / unlike.a < 0.1
     assert without.traction.q1 == pytest.approx(-without.traction.q2, abs=1e-12 * unlike.p0)
-
-
-def test_a_kept_mesh_is_not_made_again(monkeypatch):
-    keep = Kept()
-    first, other = load_scene("hertz-shear", [SIZE]), load_scene("hertz-shear", [SIZE, "load.Q=[-1e5, 1e5]"])
-    fem_method.solve(first, plan(first), keep=keep)
-    monkeypatch.setattr(bodies, "block", None)
-    assert fem_method.solve(other, plan(other), keep=keep).counts["factorizations"] == 0
 
 
 @pytest.mark.slow

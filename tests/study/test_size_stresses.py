@@ -5,7 +5,7 @@ import csv
 import msgspec
 import numpy as np
 import pytest
-from size_entries import entries, scene, sized
+from size_entries import entries, on_mesh, scene
 
 from partialslip.study.batch.ledger import Ledger
 from partialslip.study.batch.sweep import workers
@@ -33,14 +33,10 @@ def stressed_study():
     """A study in which sigma_xx comes near the half-plane with 1/size, and averages of swt with its square."""
     axis = read("bodies.*.width=4a,8a,16a,32a,64a,128a")
     plain = entries(axis.name, {at: 0.3 * at**-2.0 for at in axis.values})
-    found = [
-        with_stresses(
-            entry,
-            {"sigma_xx": 1e8, "swt": 1e6, "swt.line": 5e5},
-            {"sigma_xx": 1e8 * (1 - 0.5 / at), "swt": 1e6, "swt.line": 5e5 * (1 + 2 / at**2)},
-        )
-        for at, entry in zip((*axis.values, axis.limit), plain, strict=True)
-    ]
+    found, fem = [], {"sigma_xx": 1e8, "swt": 1e6, "swt.line": 5e5}
+    for at, entry in zip((*axis.values, axis.limit), plain, strict=True):
+        half_plane = {"sigma_xx": 1e8 * (1 - 0.5 / at), "swt": 1e6, "swt.line": 5e5 * (1 + 2 / at**2)}
+        found.append(with_stresses(entry, fem, half_plane))
     return tables.size_study(scene(), axis, found), axis, found
 
 
@@ -59,12 +55,8 @@ def test_stresses_have_laws_and_needed_sizes_like_all_quantities():
     assert head == ("largest", "unit", "size", "fem", "x, mm", "half-plane", "x, mm")
     assert rows[0] == ("sigma_xx", "MPa", "4", "100.0000 +- 0.0001", "1", "87.5", "1")
     data = list(csv.DictReader(stresses.stresses_csv(study).splitlines()))
-    assert [data[0][key] for key in ("size [a of the half-plane]", "by", "quantity", "unit")] == [
-        "4.0",
-        "fem",
-        "sigma_xx",
-        "Pa",
-    ]
+    told = [data[0][key] for key in ("size [a of the half-plane]", "by", "quantity", "unit")]
+    assert told == ["4.0", "fem", "sigma_xx", "Pa"]
     assert "sigma_xx within 1 %" in size_svg(stresses.stresses_of(study))
     assert size.stress_quantities(found) == ("sigma_xx", "swt", "swt.line")
     assert size.along(axis, found).mesh["sigma_xx"] == pytest.approx(1e-6)
@@ -73,15 +65,10 @@ def test_stresses_have_laws_and_needed_sizes_like_all_quantities():
 def test_the_change_by_the_last_mesh_is_an_error_of_stresses():
     """In full: stresses at the ends of the contact converge like square roots, so an eighth would be too little."""
     axis = read("load.P=1,2")
-    meshes = [
-        with_stresses(
-            sized({"load.P": 1.0, "accuracy": accuracy},
-                  fem={"a": 1.0, "p_max": 1.0, "m": None, "n": None, "estimate": {}, "counts": {"dofs": dofs}},
-                  exact={"a": 1.0, "p_max": 1.0, "m": None, "n": None}),
-            {"sigma_xx": value}, {"sigma_xx": 1.1e8}, error=None,
-        )
-        for accuracy, value, dofs in ((8.0, 1.01e8, 10), (1.0, 1e8, 20))
-    ]  # fmt: skip
+    meshes = []
+    for accuracy, value, dofs in ((8.0, 1.01e8, 10), (1.0, 1e8, 20)):
+        entry = on_mesh({"load.P": 1.0}, 1.0, dofs, accuracy)
+        meshes.append(with_stresses(entry, {"sigma_xx": value}, {"sigma_xx": 1.1e8}, error=None))
     assert size.along(axis, meshes).mesh["sigma_xx"] == pytest.approx(0.01)
     assert np.isnan(size.along(axis, meshes[1:]).mesh["sigma_xx"]).all()
 
@@ -147,16 +134,13 @@ def test_the_answer_is_of_the_quantities_asked_for():
         quantities_of(scene(), ["sigma_xx"], ["swt"], asked=False)
 
 
-@pytest.mark.parametrize(
-    ("changes", "names", "told"),
-    [
-        ({"fatigue.distance": 1e-4}, ["ruiz"], "--criterion ruiz: must be another for a study of sizes"),
-        ({"fatigue.distance": 1e-4}, ["findley"], "fatigue.k_findley: missing"),
-        ({"fatigue.distance": 1e-4}, ["mises"], "criterion 'mises': must be of principal, swt"),
-        ({}, ["swt"], "--criterion swt: must be given only with a constant in the table fatigue, for example --set"),
-        ({"fatigue": {}}, ["swt"], "must be given only with a constant in the table fatigue"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "names", "told"), [
+    ({"fatigue.distance": 1e-4}, ["ruiz"], "--criterion ruiz: must be another for a study of sizes"),
+    ({"fatigue.distance": 1e-4}, ["findley"], "fatigue.k_findley: missing"),
+    ({"fatigue.distance": 1e-4}, ["mises"], "criterion 'mises': must be of principal, swt"),
+    ({}, ["swt"], "--criterion swt: must be given only with a constant in the table fatigue, for example --set"),
+    ({"fatigue": {}}, ["swt"], "must be given only with a constant in the table fatigue"),
+])  # fmt: skip
 def test_criteria_that_a_study_cannot_show_are_refused(changes, names, told):
     with pytest.raises(InputError, match=told):
         criteria_of(scene().replace(changes), names)
@@ -175,7 +159,3 @@ def test_unlike_bodies_have_stresses_of_finite_elements_alone():
     study = tables.size_study(asking, axis, [found])
     assert 0 < study.models[0].off["a"][0] < 0.1
     assert stresses.in_short(study)[0].startswith("stresses of the half-plane are not known: no method finds them")
-
-
-def test_an_empty_table_fatigue_is_told_what_it_lacks():
-    assert stresses.NOT_ASKED.startswith("no stresses: the table fatigue has no constant")
