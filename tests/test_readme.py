@@ -101,6 +101,10 @@ def test_python_in_the_readme_runs(capsys):
     assert cpu > 0
 
 
+def test_it_is_short():
+    assert len(README.splitlines()) <= 120
+
+
 def test_links_lead_somewhere():
     targets = re.findall(r"\]\((?!https?:)([^)#]+)\)", README)
     assert targets

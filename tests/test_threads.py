@@ -13,6 +13,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import partialslip
+from partialslip.halfplane.cauchy import Cauchy
 from partialslip.tools.threads import one_thread
 from partialslip_fem import Kept
 from partialslip_meshes.files import quiet
@@ -31,8 +32,9 @@ SETTINGS = [  # of runs: adaptive and not, one body and two, both factors, with 
 def solved(settings, keep=None):
     """Everything that a run finds, and what it counts."""
     pytest.importorskip("cvxopt")
-    scene = partialslip.load_scene("hertz-shear", [*COARSE, *settings])
-    fem = partialslip.run(scene, ["fem"], keep=keep)["fem"]
+    fem = partialslip.run(partialslip.load_scene("hertz-shear", [*COARSE, *settings]), ["fem"], keep=keep).results[
+        "fem"
+    ]
     traction = fem.traction
     columns = [getattr(traction, key) for key in ("x", "p", "q1", "q2")]
     return [np.array([fem.a, fem.m, fem.n]), *columns], dict(fem.counts)
@@ -136,6 +138,24 @@ def test_limits_that_overlap(alone):
             other.result()
         assert blas() == before
     assert {threads for _, threads in seen[0]} == {1}
+
+
+def test_exact_stresses_take_one_thread(monkeypatch):
+    """While a scene is solved and when stresses are asked for later; on busy cores several threads only cost."""
+    seen = []
+
+    def watch(name):
+        integrals = getattr(Cauchy, name)
+        monkeypatch.setattr(Cauchy, name, lambda self, z: seen.append(blas()) or integrals(self, z))
+
+    watch("__call__")
+    watch("along")
+    with threadpool_limits(3, user_api="blas"):
+        exact = partialslip.run("hertz-shear", "exact", subsurface=True)["exact"]
+        solving = len(seen)
+        exact.stress_at([0.0, 1e-3], -1e-3)
+    assert 0 < solving < len(seen)
+    assert {threads for each in seen for _, threads in each} == {1}
 
 
 def test_what_other_threads_print_while_a_mesh_is_read(tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 """A browser for tests of the live page: headless Chromium, controlled by its protocol over a pipe."""
 
+import base64
 import contextlib
 import itertools
 import json
@@ -96,8 +97,19 @@ class Browser:
 
     def drag(self, start, end):
         """Drag the mouse from ``start`` to ``end`` (x and y on the page)."""
-        for way, (x, y), buttons in (("mousePressed", start, 1), ("mouseMoved", end, 1), ("mouseReleased", end, 0)):
+        for way, (x, y), buttons in (
+            ("mousePressed", start, 1),
+            ("mouseMoved", end, 1),
+            ("mouseReleased", end, 0),
+        ):
             self.send("Input.dispatchMouseEvent", type=way, x=x, y=y, button="left", buttons=buttons, clickCount=1)
+
+    def picture(self, path):
+        """Return the whole page as PNG."""
+        size = self.send("Page.getLayoutMetrics")["cssContentSize"]
+        clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
+        shot = self.send("Page.captureScreenshot", format="png", clip=clip, captureBeyondViewport=True)
+        path.write_bytes(base64.b64decode(shot["data"]))
 
     def close(self):
         """End the browser."""

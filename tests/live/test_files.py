@@ -35,6 +35,10 @@ def test_one_file(tmp_path, monkeypatch, capsys):
     assert "<h1>hertz-shear</h1>" in Path("here", "page.html").read_text("utf-8")
 
 
+def test_it_says_what_the_sliders_do_not_reach(text):
+    assert "The sliders do not reach a P or a moment that varies, loads out of phase" in text
+
+
 def test_it_stands_alone(text):
     outline = Outline(text)
     assert outline.links == []
@@ -86,18 +90,24 @@ def test_a_title_is_text():
     assert outline.scene["title"] == title
 
 
-@pytest.mark.parametrize(("scene", "overrides", "says"), [
-    ("flat-rounded", [], 'profile.kind = "flat-rounded": must be "hertz"'),
-    ("hertz-shear", ["load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]"], "load: Q and sigma are out of"),
-    ("fretting-aluminium", ["load.P=[2e5, 3e5, 2e5]", "load.Q=[0, 1e4, 2e4]", "load.sigma=[0, 0]"],
-     "load: P, Q and sigma are out of phase"),
-    ("fretting-aluminium", ["load.P=[2e5, 3e5]"], "load: P varies; must be constant for a live page"),
-    ("hertz-shear", ["load.M=50.0"], "load.M: must not be given for a live page"),
-    ("hertz-shear", ["load.e=[1e-4, -1e-4]"], "load.e: must not be given for a live page"),
-    ("hertz-shear", ["friction.f=0"], "friction.f = 0: must be > 0"),
-    ("hertz-shear", ["effects.opposing-slip=false"], "effects.opposing-slip: must not be given for a live page"),
-    ("hertz-shear", ["material.upper={E=1e9, nu=0.3}"], "material.upper, material.lower: the bodies differ"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("scene", "overrides", "says"),
+    [
+        ("flat-rounded", [], 'profile.kind = "flat-rounded": must be "hertz"'),
+        ("hertz-shear", ["load.Q=[0, 1e5, 0, -1e5]", "load.sigma=[1e8, 0, -1e8, 0]"], "load: Q and sigma are out of"),
+        (
+            "fretting-aluminium",
+            ["load.P=[2e5, 3e5, 2e5]", "load.Q=[0, 1e4, 2e4]", "load.sigma=[0, 0]"],
+            "load: P, Q and sigma are out of phase",
+        ),
+        ("fretting-aluminium", ["load.P=[2e5, 3e5]"], "load: P varies; must be constant for a live page"),
+        ("hertz-shear", ["load.M=50.0"], "load.M: must not be given for a live page"),
+        ("hertz-shear", ["load.e=[1e-4, -1e-4]"], "load.e: must not be given for a live page"),
+        ("hertz-shear", ["friction.f=0"], "friction.f = 0: must be > 0"),
+        ("hertz-shear", ["effects.opposing-slip=false"], "effects.opposing-slip: must not be given for a live page"),
+        ("hertz-shear", ["material.upper={E=1e9, nu=0.3}"], "material.upper, material.lower: the bodies differ"),
+    ],
+)
 def test_scenes_that_it_is_not_for(scene, overrides, says):
     with pytest.raises(InputError, match=f"^{re.escape(says)}"):
         live_page(load_scene(scene, overrides))

@@ -46,10 +46,12 @@ def all_loads():
     some = np.linspace(0.02, 0.98, 17)
     off = np.concatenate([way * np.logspace(-15, -1, 15) for way in (-1, 1)])
     parts = [
-        (Qf, sf), np.meshgrid(near, [0, 1e-9, 1e-3, 0.5, 3, 7.9, 8.1, 12, 50]),
+        (Qf, sf),
+        np.meshgrid(near, [0, 1e-9, 1e-3, 0.5, 3, 7.9, 8.1, 12, 50]),
         (some[:, None], transition(some, HertzShape())[:, None] * (1 + off)),
-        np.meshgrid([0, 1e-6, 0.1, 0.5, 0.9, 0.99], np.logspace(1.5, 5, 15)), (0.5, [1e5, 1e6, 1e9]),
-    ]  # fmt: skip
+        np.meshgrid([0, 1e-6, 0.1, 0.5, 0.9, 0.99], np.logspace(1.5, 5, 15)),
+        (0.5, [1e5, 1e6, 1e9]),
+    ]
     pairs = (np.broadcast_arrays(*(np.asarray(part, float) for part in pair)) for pair in parts)
     return np.concatenate([np.column_stack([Qf.ravel(), sf.ravel()]) for Qf, sf in pairs]).T
 
@@ -142,8 +144,10 @@ def test_it_starts_with_the_loads_of_the_scene(browser, folder, overrides, regim
 def drawn_ends(page):
     """Return q as drawn, in pixels above the axis, next to the ends of the contact."""
     path = "document.querySelector('#tractions .{}').getAttribute('d')"
-    points, zero = ([[float(at) for at in point.split()] for point in page.run(path.format(of)).strip("M").split("L")]
-                    for of in ("shear", "zero"))  # fmt: skip
+    points, zero = (
+        [[float(at) for at in point.split()] for point in page.run(path.format(of)).strip("M").split("L")]
+        for of in ("shear", "zero")
+    )
     points.sort()
     return [zero[0][1] - points[next_to][1] for next_to in (1, -2)]
 
@@ -194,12 +198,12 @@ def test_a_number_is_typed(page):
 @pytest.mark.parametrize(("control", "text"), [("Qf", "-0.1"), ("f", "0"), ("f", "1e-9"), ("sf", "1e400"), ("dQ", "")])
 def test_what_is_no_load_is_marked_and_left_out(page, control, text):
     before = answer(page)
-    page.run(f"const field = document.querySelector('[type=number][data-sets={control}]')")
-    page.run("field.focus(); field.select()")
-    if text:
-        page.send("Input.insertText", text=text)
-    else:
-        page.run("field.value = ''; field.dispatchEvent(new Event('input'))")
+    page.run(
+        f"const field = document.querySelector('[type=number][data-sets={control}]'); field.focus(); field.select()"
+    )
+    page.send("Input.insertText", text=text) if text else page.run(
+        "field.value = ''; field.dispatchEvent(new Event('input'))"
+    )
     assert page.run("field.getAttribute('aria-invalid')") == "true"
     assert answer(page) == before
     page.run("field.blur()")
@@ -220,6 +224,17 @@ def test_a_normal_force_is_typed(page):
     shown = page.run("['a-1', 'p0-1'].map((id) => document.getElementById(id).textContent)")
     assert shown == [engineering(pressed.a, "m", 6), engineering(pressed.p0, "Pa", 6)]
     assert engineering(pressed.a, "m", 5) in page.run("document.querySelector('#tractions').textContent")
+
+
+def test_the_slider_of_P_by_keyboard(page):
+    slider = page.run("(() => { const { min, max, step, value } = document.getElementById('P');"
+                      "return [min, max, step, value].map(Number); })()")  # fmt: skip
+    low, high, step, value = slider
+    assert 0 < low < value < high
+    assert abs(value * 1e3 - load_scene(LARGE).P) <= step * 1e3 / 2
+    page.run("document.getElementById('P').focus()")
+    page.press("ArrowRight", times=3)
+    assert page.run("page.loads().P") == pytest.approx((value + 3 * step) * 1e3, rel=1e-12)
 
 
 SETTINGS = "document.getElementById('opposite').click();" + "".join(
@@ -285,6 +300,20 @@ def test_the_point_is_dragged(page):
     assert handle(page) == pytest.approx(start, abs=0.1)
 
 
+def test_the_point_is_dragged_with_a_finger(browser, folder):
+    page = opened(browser, folder, width=390, mobile=True)
+    page.send("Emulation.setTouchEmulationEnabled", enabled=True)
+    page.run("document.querySelector('#map').scrollIntoView({ block: 'center' })")
+    start, before, scrolled = handle(page), answer(page), page.run("scrollY")
+    finger = [{"x": start[0] + share * 80, "y": start[1] - share * 40} for share in np.linspace(0, 1, 6)]
+    for way, points in (("touchStart", finger[:1]), *(("touchMove", [at]) for at in finger[1:]), ("touchEnd", [])):
+        page.send("Input.dispatchTouchEvent", type=way, touchPoints=points)
+    page.send("Emulation.setTouchEmulationEnabled", enabled=False)
+    assert handle(page) == pytest.approx([start[0] + 80, start[1] - 40], abs=1)
+    assert page.run("scrollY") == scrolled
+    assert answer(page).Qf > before.Qf + 0.1
+
+
 def test_the_point_is_moved_by_keys(page):
     before = answer(page)
     page.run("document.querySelector('.handle').focus()")
@@ -317,3 +346,15 @@ def test_it_fits_the_window(browser, folder, width, mobile, scheme):
     ink, paper = page.run("['color', 'backgroundColor'].map((key) => getComputedStyle(document.body)[key])")
     assert ("22, 22, 22" in paper, "17, 17, 17" in ink) == ((True, False) if scheme == "dark" else (False, True))
     assert (page.errors, [url for url in page.asked if not url.startswith("file:")]) == ([], [])
+
+
+def test_every_control_has_a_name(page):
+    nodes = page.send("Accessibility.getFullAXTree")["nodes"]
+    named = [
+        (node["role"]["value"], node["name"]["value"])
+        for node in nodes
+        if node.get("role", {}).get("value") in ("slider", "spinbutton", "checkbox", "button", "image", "img")
+    ]
+    assert [role for role, name in named if not name] == []
+    assert [role for role, _ in named].count("slider") == 5  # four and the map's point
+    assert len({name for role, name in named if role == "spinbutton"}) == 6

@@ -10,16 +10,17 @@ import textwrap
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
-from ending import ended
 
 import partialslip
 from partialslip.study.batch.job import Job, solve_job
 from partialslip.tools.errors import MissingLibraryError, PartialslipError
 from partialslip_meshes import block
 from partialslip_meshes import gmsh as mesher
+from partialslip_meshes import mesher as process
 
 SIZES = {-1.0: 0.05, 0.2: 0.05}
 OUTLINE = (8.0, (-1.2, 1.2), SIZES, 0.5)
@@ -54,14 +55,28 @@ def pid():
     return mesher._mesher._process.pid
 
 
-def command(folder, code):
-    """The command that runs a script of its own."""
+def ended(number, within=20.0):
+    """Whether the process ``number`` ends before long. It may stay a zombie if nobody waits for it."""
+    until = time.monotonic() + within
+    while time.monotonic() < until:
+        try:
+            state = Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
+        except (FileNotFoundError, ProcessLookupError):
+            return True
+        if state == "Z":
+            return True
+        time.sleep(0.02)
+    return False
+
+
+def script(folder, code, *, prefix="", **settings):
+    """Run a script of its own; returns what became of it."""
     path = folder / "script.py"
-    path.write_text("import partialslip\nfrom partialslip_meshes import block, gmsh\n" + textwrap.dedent(code))
-    return [sys.executable, path]
+    path.write_text(prefix + "import partialslip\nfrom partialslip_meshes import block, gmsh\n" + textwrap.dedent(code))
+    return subprocess.run([sys.executable, path], capture_output=True, text=True, check=False, timeout=60, **settings)
 
 
-def test_no_other_mesh_than_in_this_process(tmp_path, monkeypatch):
+def test_no_other_mesh_than_in_this_process(monkeypatch):
     """gmsh and the recipe are the same ones, so the meshes are, bit for bit."""
     code = f"""
     import sys, json, gmsh as G
@@ -70,7 +85,10 @@ def test_no_other_mesh_than_in_this_process(tmp_path, monkeypatch):
     mesh = block({OUTLINE}[0], *{OUTLINE}[1:], 3.0, 0.1, (9.0, 2.0), lambda x: x**2 / 100, 0.2)
     print(mesh.points.tobytes().hex(), mesh.triangles.tobytes().hex())
     """
-    done = subprocess.run(command(tmp_path, code), capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", "import partialslip\nfrom partialslip_meshes import block\n" + textwrap.dedent(code)],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
     mesh = block(*OUTLINE, 3.0, 0.1, (9.0, 2.0), lambda x: x**2 / 100, 0.2)
     assert done.stdout.split() == [mesh.points.tobytes().hex(), mesh.triangles.tobytes().hex()]
     monkeypatch.setitem(mesher.OPTIONS, "RandomFactor", 1e-4)
@@ -140,10 +158,42 @@ def test_in_daemonic_workers_that_are_spawned():
     assert found.run.methods["fem"].a == solve_job(case).run.methods["fem"].a
 
 
+@posix
+@pytest.mark.filterwarnings("ignore:This process .* is multi-threaded:DeprecationWarning")
+def test_a_fork_does_not_keep_it_alive(tmp_path):
+    """The child has no end of the parent's pipes."""
+    code = f"""
+    import os, sys, time
+    {CALL}
+    print(gmsh._mesher._process.pid, flush=True)
+    if os.fork() == 0:
+        os.close(1), os.close(2)
+        time.sleep(30)
+        os._exit(0)
+    os._exit(0)
+    """
+    assert ended(int(script(tmp_path, code).stdout))
+
+
 def test_a_script_without_a_main_guard(tmp_path, expected):
-    program = command(tmp_path, f"print(len({CALL}.points))")
-    done = subprocess.run(program, capture_output=True, text=True, check=False, timeout=60)
+    done = script(tmp_path, f"print(len({CALL}.points))")
     assert (done.stdout, done.stderr, done.returncode) == (f"{len(expected.points)}\n", "", 0)
+
+
+def test_modules_beside_a_script_are_not_taken_for_the_standard_library(tmp_path, expected):
+    (tmp_path / "select.py").write_text("raise SystemExit('not this one')")
+    (tmp_path / "platform.py").write_text("raise SystemExit('nor this one')")
+    done = script(tmp_path, f"sys.path.insert(0, {str(tmp_path)!r}); print(len({CALL}.points))", prefix="import sys\n"
+                  "here = sys.path.pop(0)\n")  # fmt: skip
+    assert (done.stdout, done.stderr) == (f"{len(expected.points)}\n", "")
+
+
+@posix
+def test_in_a_folder_that_is_gone(tmp_path, expected):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    done = script(tmp_path, f"import os, shutil; shutil.rmtree(os.getcwd()); print(len({CALL}.points))", cwd=gone)
+    assert (done.stdout, done.stderr) == (f"{len(expected.points)}\n", "")
 
 
 @posix
@@ -157,7 +207,9 @@ def test_ends_with_its_parent(tmp_path, kind, busy):
     print(gmsh._mesher._process.pid, flush=True)
     {"block(8.0, (-1.2, 1.2), {}, 0.001, along=0.0005)" if busy else "time.sleep(60)"}
     """
-    with subprocess.Popen(command(tmp_path, code), stdout=subprocess.PIPE, text=True) as parent:
+    path = tmp_path / "script.py"
+    path.write_text("import partialslip\nfrom partialslip_meshes import block, gmsh\n" + textwrap.dedent(code))
+    with subprocess.Popen([sys.executable, path], stdout=subprocess.PIPE, text=True) as parent:
         number = int(parent.stdout.readline())
         time.sleep(0.5)
         assert not ended(number, within=0.0) or not busy
@@ -221,8 +273,11 @@ def test_interrupted(tmp_path):
     print(gmsh._mesher._process.pid, flush=True)
     sys.exit(main(["run", "hertz-shear", "--with", "fem"]))
     """
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "cwd": tmp_path}
-    with subprocess.Popen(command(tmp_path, code), **pipes, start_new_session=True) as parent:
+    path = tmp_path / "script.py"
+    path.write_text("import partialslip\nfrom partialslip_meshes import block, gmsh\n" + textwrap.dedent(code))
+    command = [sys.executable, path]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+                          cwd=tmp_path) as parent:  # fmt: skip
         number = int(parent.stdout.readline())
         assert parent.stdout.readline() == "asked\n"
         time.sleep(0.5)
@@ -275,3 +330,19 @@ def test_no_gmsh_at_all(monkeypatch):
     monkeypatch.setattr(sys, "path_importer_cache", {})
     with pytest.raises(MissingLibraryError, match="gmsh is missing"):
         block(*OUTLINE)
+
+
+def test_messages_of_any_size(tmp_path):
+    del tmp_path
+    read, write = os.pipe()
+    arrays = [b"", b"x" * 5_000_000, b"yz"]
+    with ThreadPoolExecutor(1) as pool:
+        sent = pool.submit(process.send, write, {"n": 0.1}, arrays)
+        head, found = process.receive(read)
+        sent.result()
+    assert head["n"] == 0.1
+    assert found == arrays
+    os.close(write)
+    with pytest.raises(EOFError):
+        process.receive(read)
+    os.close(read)

@@ -10,19 +10,19 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 
 import made
 import msgspec
 import numpy as np
 import pytest
-from ending import ended
 from outline import texts as texts_of
-from size_entries import NONE, X, entries, made_sizes, on_mesh, scene, sized
+from size_entries import X, entries, made_sizes, scene, sized
 
 from partialslip.cli import main
 from partialslip.study.batch.job import Job, solve_job
 from partialslip.study.batch.ledger import Ledger
-from partialslip.study.batch.sweep import work_through, workers
+from partialslip.study.batch.sweep import Task, work_through, workers
 from partialslip.study.size import sizes as size
 from partialslip.study.size import tables
 from partialslip.study.size.axes import axis as read
@@ -34,8 +34,9 @@ from partialslip.tools.errors import InputError
 
 
 def test_the_error_of_marched_half_planes_is_part_of_that_of_a_difference():
-    fem = {"a": 1.1, "estimate": {"a": 3e-5}, "counts": {"dofs": 100}, **NONE}
-    found = sized({"load.P": 4.0, "accuracy": 1.0}, fem=fem, march={"a": 1.0, "estimate": {"a": 2e-5}, **NONE})
+    labels, none = {"load.P": 4.0, "accuracy": 1.0}, {"p_max": 1.0, "m": None, "n": None}
+    fem = {"a": 1.1, "estimate": {"a": 3e-5}, "counts": {"dofs": 100}, **none}
+    found = sized(labels, fem=fem, march={"a": 1.0, "estimate": {"a": 2e-5}, **none})
     along = size.along(read("load.P=4,8"), [found])
     assert (along.off["a"], along.mesh["a"]) == (pytest.approx(0.1), pytest.approx(5e-5))
 
@@ -58,6 +59,42 @@ def test_a_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
     assert solved == [0, 1, 2, 3, 4, 5, 6]
     assert seen == [(4, 7), (5, 7), (6, 7), (7, 7)]
     assert "nothing" in Ledger(path)[broken.key]["error"]
+
+
+class Counting(ThreadPoolExecutor):
+    """Counts the tasks submitted at once."""
+
+    waiting = most = 0
+
+    def submit(self, *work):
+        self.waiting += 1
+        self.most = max(self.most, self.waiting)
+        future = super().submit(*work)
+        future.add_done_callback(lambda _: setattr(self, "waiting", self.waiting - 1))
+        return future
+
+
+def test_a_long_sweep_is_handed_over_bit_by_bit(tmp_path):
+    tasks = [Task(str(number), lambda number: {"found": number}, number) for number in range(2000)]
+    ledger = Ledger(tmp_path / "ledger.jsonl")
+    with Counting(2) as executor:
+        work_through(tasks, ledger, executor)
+    assert {entry["key"]: entry["found"] for entry in ledger} == {str(number): number for number in range(2000)}
+    assert executor.most <= 256
+
+
+def test_in_this_process_each_case_is_kept_before_the_next_begins(tmp_path):
+    ledger, known = Ledger(tmp_path / "ledger.jsonl"), []
+
+    def do(number):
+        known.append(len(ledger))
+        if number == 3:
+            raise KeyboardInterrupt
+        return {}
+
+    with pytest.raises(KeyboardInterrupt), workers(processes=1) as executor:
+        work_through([Task(str(number), do, number) for number in range(5)], ledger, executor)
+    assert known == [0, 1, 2, 3]
 
 
 WORKERS = """
@@ -88,7 +125,20 @@ def test_workers_end_with_the_process_that_they_work_for(kind):
     process.send_signal(kind)
     _, said = process.communicate(timeout=30)
     assert "InvalidStateError" not in said
-    assert all(map(ended, numbers)), "a worker is left behind"
+    for _ in range(600):
+        if not any(map(runs, numbers)):
+            break
+        time.sleep(0.05)
+    else:
+        pytest.fail("a worker is left behind")
+
+
+def runs(number):
+    """Return whether the process of that number runs; zombies do not count."""
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_the_law_of_made_up_sizes_is_found():
@@ -162,9 +212,14 @@ def test_every_point_is_fitted_or_says_why_not():
     off = np.where(X == 16, np.nan, 0.3 * X**-2.0)
     points = trend(made_sizes(off, mesh), "m").points
     assert points == (
-        PointStatus.SMALLER, PointStatus.FITTED, PointStatus.NO_VALUE, PointStatus.FITTED, PointStatus.UNCLEAR,
-        PointStatus.FITTED, PointStatus.LIMIT,
-    )  # fmt: skip
+        PointStatus.SMALLER,
+        PointStatus.FITTED,
+        PointStatus.NO_VALUE,
+        PointStatus.FITTED,
+        PointStatus.UNCLEAR,
+        PointStatus.FITTED,
+        PointStatus.LIMIT,
+    )
     assert trend(made_sizes(off, np.where(X > 8, 1.0, 0.0)), "m").points[:2] == (PointStatus.FEW, PointStatus.FEW)
     assert trend(made_sizes(off, np.nan), "m").points[0] is PointStatus.UNKNOWN
 
@@ -219,8 +274,14 @@ def test_ctrl_c_says_what_is_kept(tmp_path, monkeypatch, capsys):
 def test_the_same_mesh_twice_gives_no_error_of_the_mesh():
     """A fixed element size gives the same mesh for every accuracy, and no estimate."""
     axis = read("load.P=1,2")
-    known = ((8.0, 1.08, 10), (1.0, 1.0, 20), (0.125, 1.0, 20))
-    meshes = [on_mesh({"load.P": 1.0}, a, dofs, accuracy) for accuracy, a, dofs in known]
+    meshes = [
+        sized(
+            {"load.P": 1.0, "accuracy": accuracy},
+            fem={"a": a, "p_max": 1.0, "m": None, "n": None, "estimate": {}, "counts": {"dofs": dofs}},
+            exact={"a": 1.0, "p_max": 1.0, "m": None, "n": None},
+        )
+        for accuracy, a, dofs in ((8.0, 1.08, 10), (1.0, 1.0, 20), (0.125, 1.0, 20))
+    ]  # fmt: skip
     assert size.along(axis, meshes[:1]).mesh["a"] == pytest.approx(np.nan, nan_ok=True)
     assert size.along(axis, meshes[1:]).mesh["a"] == pytest.approx(np.nan, nan_ok=True)
     assert size.along(axis, meshes).mesh["a"] == pytest.approx(0.01)
@@ -335,8 +396,14 @@ def test_entries_without_equivalent_half_planes_are_read():
 def test_maps_leave_out_what_was_not_solved():
     """Each change is at the right place: first axis across, second axis up."""
     axes = [read("bodies.*.width=2a,4a,8a"), read("bodies.*.height=3a,9a")]
-    entries = [on_mesh({"bodies.*.width": x, "bodies.*.height": y}, 1 + 0.1 / x / y)
-               for x in axes[0].values for y in axes[1].values]  # fmt: skip
+    entries = [
+        sized(
+            {"bodies.*.width": x, "bodies.*.height": y, "accuracy": 1.0},
+            fem={"a": 1 + 0.1 / x / y, "p_max": 1.0, "m": None, "n": None, "estimate": {}},
+            exact={"a": 1.0, "p_max": 1.0, "m": None, "n": None},
+        )
+        for x in axes[0].values for y in axes[1].values
+    ]  # fmt: skip
     entries[0] = Sized(labels=entries[0].labels, error="too narrow")
     x, y, off = size.grid(axes, entries, "a")
     expected = 0.1 / x / y[:, None]
