@@ -122,7 +122,7 @@ def test_files_that_a_mesh_refers_to_are_not_opened_either(tmp_path, odd, name, 
 
 def test_a_mesh_that_includes_itself_is_refused(tmp_path):
     (tmp_path / "round.inp").write_text("*INCLUDE, INPUT=round.inp\n", "utf-8")
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="must not include itself"):
         READERS["mesh.inp"](tmp_path / "round.inp")
 
 
@@ -148,7 +148,8 @@ def test_a_regular_file_that_would_wait_is_refused():
 OPENERS = {
     "inputfile",  # files of users
     "ledger", "state",  # to write
-    "origin", "memory",  # of the packages and of the operating system
+    "origin", "cost",  # of the packages and of the operating system
+    "mesher",  # meshes that are checked before
     "reading", "book", "problem", "gradual_table",  # data of the package
     "ending",  # the null device
     "process", "calculix", "neutral", "moose", "run_getfem", "run_kratos", "run_opensees",  # in folders made here

@@ -47,7 +47,7 @@ def test_a_scene_has_one_answer():
     [("march", 0.0), ("fem", 0.0), ("fem", 1e-6), pytest.param("march", 1e-6, marks=pytest.mark.slow)],
 )
 def test_methods_agree_on_the_points_that_never_slip(method, more):
-    """Far below the size of a cell there, also where the pressure varies a little. Meshes are made for m and n."""
+    """Within half a cell there, also where the pressure varies a little. Meshes are made for m and n."""
     of = scene(0.55, 7.0)
     if more:
         (Q1, Q2), (sigma1, sigma2), P = of.load.Q, of.load.sigma, of.P
@@ -56,7 +56,9 @@ def test_methods_agree_on_the_points_that_never_slip(method, more):
     of = of.replace({"fem.accuracy": 1e-4})
     found = partialslip.run(of, [method])[method]
     assert found.permanent is not None
-    assert np.array(found.permanent) / found.a == pytest.approx(cycle(0.55, 7.0).permanent, abs=5e-4)
+    off = np.abs(np.array(found.permanent) / found.a - cycle(0.55, 7.0).permanent)
+    at = np.searchsorted(found.traction.cells, found.permanent)
+    assert (off < np.diff(found.traction.cells)[at - 1] / found.a / 2).all()
     assert -found.m < found.permanent[0] - 1e-3 * found.a
 
 

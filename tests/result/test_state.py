@@ -53,7 +53,7 @@ def after_a_stop(method):
 def test_estimates_contain_the_error_of_the_state(method):
     found, errors = after_a_stop(method)
     for key, error in errors.items():
-        assert error <= found.estimate[key] <= 15e-4
+        assert error <= found.estimate[key] <= 2 * 15e-4  # the bar of the state, and that of the cells
         assert found.shares["start"][key] >= found.estimate[key] / 4
         assert found.estimate[key] == pytest.approx(sum(share.get(key, 0.0) for share in found.shares.values()))
 

@@ -105,6 +105,7 @@ TWINS = {
         profile.measured.smooth = 1e-3                 | 1
         profile.measured.noise = 2e-7                  | 2e-4
         profile.measured.offset = 3e-6                 | 3e-3
+        profile.measured.centre = 5e-5                 | 5e-2
         profile.measured.misfit = 1e-7                 | 1e-4
         load.P = 135750.0                              | 135.75""",
     "moment": """

@@ -37,7 +37,6 @@ def add(commands: Commands) -> None:
         examples=[
             "partialslip score fretting-aluminium --template > mine.csv",
             "partialslip score fretting-aluminium mine.csv --bar 1e-2",
-            "partialslip score hertz-shear job.frd --factors 1e-3,1e6,1e6",
             "partialslip score hertz-shear first.rpt second.rpt --where part=FLAT-1",
         ],
         failure="a bar missed",
