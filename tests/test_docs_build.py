@@ -126,7 +126,8 @@ def check(field, allowed, default):
             words = {part.strip("`") for part in allowed.split(", ") if kind is kinds[0] or part.startswith("`")}
             assert words == {str(value) for value in kind.values}
         elif isinstance(kind, msgspec.inspect.VarTupleType) and kind is kinds[0]:
-            assert allowed == f"{kind.min_length} to {kind.max_length} numbers"
+            least, most = kind.min_length, kind.max_length
+            assert allowed == ("two" if least == most == 2 else f"{least} to {most} numbers")
     if isinstance(field.default, (int, float)) and not isinstance(field.default, bool):
         assert float(default) == field.default
     elif isinstance(field.default, tuple):

@@ -3,6 +3,7 @@
 import argparse
 import difflib
 import functools
+import itertools
 import re
 import shlex
 import sys
@@ -53,11 +54,13 @@ class _Parser(argparse.ArgumentParser):
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> tuple[Any, list[str]]:
         """Parse; refuse what is unknown here, where the options of the command are known."""
         found, unknown = super().parse_known_args(args, namespace)
-        # argparse takes an optional positional for absent if options stand before it
+        # argparse takes optional positionals for absent if options stand before them
         for action in self._get_positional_actions():
-            absent = action.nargs == "?" and getattr(found, action.dest) == action.default
-            if absent and unknown and not unknown[0].startswith("-"):
-                setattr(found, action.dest, self._get_values(action, [unknown.pop(0)]))
+            most = {"?": 1, "*": len(unknown)}.get(str(action.nargs), 0)
+            given = list(itertools.takewhile(lambda each: not each.startswith("-"), unknown[:most]))
+            if given and getattr(found, action.dest) == action.default:
+                setattr(found, action.dest, self._get_values(action, given))
+                del unknown[: len(given)]
         if unknown:
             near = difflib.get_close_matches(unknown[0].partition("=")[0], self._option_string_actions, 1, _ALIKE)
             self.error(f"unknown argument {unknown[0]}" + (f": did you mean {near[0]}?" if near else ""))
