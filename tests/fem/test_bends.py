@@ -33,7 +33,7 @@ def on_mesh(size, order, b, growth):
 
 
 @pytest.mark.parametrize("b", [1e-3, 2e-4])
-@pytest.mark.parametrize("order", [4, 6])
+@pytest.mark.parametrize("order", [4, pytest.param(6, marks=pytest.mark.slow)])
 def test_error_of_p_falls_with_the_size_to_the_power_of_one_and_a_half(order, b):
     """Cells have whole sizes, so that the slope between two meshes is not quite 1.5."""
     (large, told), (small, less) = (on_mesh(size, order, b, FINE[order]) for size in (1.6e-2, 2e-3))
