@@ -30,6 +30,18 @@ def compared(scene, path, **settings):
     return found[path.name], found.comparisons[path.name]
 
 
+@pytest.mark.parametrize("wrong", ["p", "dq"])
+def test_tractions_off_by_three_percent_are_told(wrong, tmp_path):
+    """The test of docs/howto/csv.md, in a code's own checks."""
+    x, p, dq = sampled(161)
+    bars = (1e-2, 1e-2, 1e-2)
+    assert str(score(SCENE, written(tmp_path / "t.csv", (x, p, dq)), bar=bars).conclusion) == "all bars met"
+    off = (x, p * (1.03 if wrong == "p" else 1), dq * (0.97 if wrong == "dq" else 1))
+    outcome = score(SCENE, written(tmp_path / "t.csv", off), bar=bars)
+    assert not outcome.passed
+    assert str(outcome.conclusion).startswith("missed: t.csv: " + {"p": "P: error 0.03", "dq": "dQ: error"}[wrong])
+
+
 @pytest.mark.parametrize("count", [45, 89, 353])
 def test_a_perfect_table_of_points_is_perfect(count, tmp_path):
     """At 0.05 a lines between the points are 1.5e-2 of p off, which is no error of the table."""

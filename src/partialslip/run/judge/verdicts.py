@@ -352,6 +352,9 @@ class Conclusion:
     unjudged: tuple[str, ...] = ()
     asked: bool = True
 
+    def __str__(self) -> str:
+        return self.text
+
     @property
     def text(self) -> str:
         """The outcome in words, with what was missed or not judged."""
