@@ -48,7 +48,9 @@ def _read(path: Path) -> meshio.Mesh:
         with quiet():
             return meshio.read(path)
     except ImportError as error:
-        raise InputError(f"{path}: cannot be read: the package {error.name} is missing") from None
+        extra = {"h5py": "med", "netCDF4": "exodus"}.get(str(error.name))
+        hint = f"; pip install partialslip[{extra}]" if extra else ""
+        raise InputError(f"{path}: cannot be read: the package {error.name} is missing{hint}") from None
     except (Exception, SystemExit) as error:
         reason = " ".join(str(error).split())[:100] if not isinstance(error, SystemExit) else ""
         raise InputError(f"{path}: cannot be read{f': {reason}' if reason else ''}") from None

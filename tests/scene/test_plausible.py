@@ -25,6 +25,7 @@ def with_(table, **values):
         (SCENE.replace(material={"E": 70e3}), "material.E = 7e+04 Pa is softer than rubber: are all"),
         (with_("profile", R=0.05), "a/R is about"),
         (with_("profile", R=5e12), "a/R is about"),
+        (parse_scene(RIG | {"profile": {"kind": "tabulated", "x": [0, 0.5, 1], "gap": [0, 2.5, 10]}}), "a/R is about"),
         (with_("load", P=300e9), "a = "),
         (with_("load", sigma=[0, 20e6]), "load.sigma = 2e+07 MPa is 1.7e+02 of E, more than any elastic strain: is"),
         (parse_scene(RIG | {"fatigue": {"distance": 1e9}}), "fatigue.distance = 1e+09 mm is "),

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from partialslip.scene.profiles import Hertz
+from partialslip.scene.profiles import Hertz, Tabulated
 from partialslip.scene.units import SI, Dimension
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def implausible(scene: "Scene") -> tuple[str, ...]:
         for name, own in scene.material
         if not _E[0] <= own.E <= _E[1]
     ]
-    if isinstance(scene.profile, Hertz) and not _SLOPE[0] <= a / scene.profile.R <= _SLOPE[1]:
+    if isinstance(scene.profile, (Hertz, Tabulated)) and not _SLOPE[0] <= a / scene.profile.R <= _SLOPE[1]:
         size = "less than surfaces are smooth" if a < scene.profile.R else "far from nearly flat surfaces"
         found.append(f"a/R is about {a / scene.profile.R:.1g}, {size}: {hint}")
     tension, softest = max(map(abs, scene.load.sigma), default=0.0), min(own.E for _, own in scene.material)
