@@ -6,6 +6,7 @@ copies. Sets of the assembly have members in instances, as INSTANCE=NAME or NAME
 
 import itertools
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -130,12 +131,17 @@ class _Mesh:
             else:
                 _collect(here, card)
         placed = {scope.name.lower(): self._placed(scope, _shift(own)) for scope, (own,) in instances}
+        of_parts = Counter(own.parameters.get("PART", "") for _, (own,) in instances)
         if not instances:
             placed = {name: self._placed(part) for name, part in parts.items()}
         top = self._placed(whole, inside=placed)
         self.found = Found(np.concatenate(self.points), self.cells)
         for each in [*placed.values(), top]:
             self._name_groups(each)
+        for scope, (card,) in instances:  # a part with one instance by its own name, too
+            part = card.parameters.get("PART", "")
+            if of_parts[part] == 1 and part.lower() not in self.found.groups:
+                self.found.group(part).elements.extend(self.found.group(scope.name).elements)
         if not self.cells:
             kinds = sorted({kind for scope in (whole, *parts.values()) for kind in scope.left_out})
             raise InputError(f"must have plane elements (CPE, CPS), not {', '.join(kinds) or 'none'}")

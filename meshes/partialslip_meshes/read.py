@@ -85,7 +85,7 @@ def read(
         if key not in lines:
             here = found.named(bodies=False)
             others = (
-                f"the file has {here}: type groups = {{ {key} = ... }}" if here else "the file has no groups of them"
+                f'the file has {here}: type groups = {{ {key} = "..." }}' if here else "the file has no groups of them"
             )
             refuse(f"must have a group {key!r} of edges or nodes of its boundary; {others}")
     every = np.concatenate(list(lines.values()))

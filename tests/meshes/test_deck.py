@@ -173,6 +173,12 @@ def test_layouts_of_decks_make_no_difference(mesh, text, tmp_path):
         assert same(replace(back, points=mesh.points), mesh), layout
 
 
+def test_a_part_with_one_instance_has_both_names(mesh, text, tmp_path):
+    made = layouts(mesh, text)["instances"].replace("*INSTANCE, NAME=FLAT-2, PART=FLAT\n0., 9.\n*END INSTANCE\n", "")
+    for body in ("FLAT-1", "flat", None):
+        assert same(replace(read(FIELD, at(tmp_path, made), body=body), points=mesh.points), mesh)
+
+
 @pytest.mark.parametrize("kind", ["CPE3", "cps3", "CPE3H", "CPS3T", "S3R"])
 def test_types_of_plane_elements(mesh, text, tmp_path, kind):
     assert same(read(FIELD, at(tmp_path, text.replace("R3D3", kind))), mesh)

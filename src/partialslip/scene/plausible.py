@@ -33,8 +33,9 @@ def implausible(scene: "Scene") -> tuple[str, ...]:
         if not _E[0] <= own.E <= _E[1]
     ]
     if isinstance(scene.profile, (Hertz, Tabulated)) and not _SLOPE[0] <= a / scene.profile.R <= _SLOPE[1]:
-        size = "less than surfaces are smooth" if a < scene.profile.R else "far from nearly flat surfaces"
-        found.append(f"a/R is about {a / scene.profile.R:.1g}, {size}: {hint}")
+        size = "too flat for any surface" if a < _SLOPE[0] * scene.profile.R else "far from nearly flat surfaces"
+        of = "heights" if isinstance(scene.profile, Tabulated) else "R"
+        found.append(f"a/R is about {a / scene.profile.R:.1g}, {size}: {hint} (R is that of the {of})")
     tension, softest = max(map(abs, scene.load.sigma), default=0.0), min(own.E for _, own in scene.material)
     if tension > _STRAIN * softest:
         found.append(line("load.sigma", tension, "Pa", f"{tension / softest:.2g} of E, more than any elastic strain"))

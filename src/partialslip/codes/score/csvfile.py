@@ -211,6 +211,7 @@ def _of_one(
         if name.lower() == "method" or any(after[0] < before[1] for before, after in itertools.pairwise(spans)):
             raise InputError(
                 f"{origin}: {name} is {_listed(kinds)}: must be one: keep one, as by {_type(name, kinds[-1])}"
+                + (f", or both load points by {_type(name, ','.join(kinds))}" if len(kinds) == 2 else "")
             )
     x, pressed = x[every], pressed[every]
     across = {k: name for k, name in enumerate(table.names) if k not in used and _ACROSS.fullmatch(split_unit(name)[0])}

@@ -149,6 +149,10 @@ def plus_estimate(bar: Bar, quantity: str, reference: Result) -> Bar:
         return bar
     own = error_of(reference, quantity, reference.method)
     if math.isnan(own):
+        if not reference.estimate and reference.method == "fem":
+            return Bar(
+                None, "fem has no error estimate on a given mesh or size: give sizes of the bodies and an accuracy"
+            )
         return Bar(None, f"{reference.method} has no error estimate of {quantity}")
     own -= sum(reference.shares.get(source, {}).get(base(quantity), 0.0) for source in ("table", "start"))
     if not own > 0:
@@ -194,7 +198,7 @@ def _decided(measure: Measure, bar: Bar | None, unsure: float) -> tuple[Outcome,
         return Outcome.MISSED, "the result has no value where the reference has one"
     outcome = judged(measure.error, bar.value, unsure)
     if outcome is Outcome.NOT_JUDGED:
-        return outcome, f"this table tells {measure.quantity} to {unsure:.1g} {measure.scale}"
+        return outcome, f"this table tells {measure.quantity} to {unsure:.2g} {measure.scale}"
     return outcome, bar.reason
 
 
