@@ -98,7 +98,7 @@ def read(
         refuse("group 'face' must go on from both ends of group 'contact', from left to right, or be left out")
     if not below:
         points, corners = points * [1, -1], corners[:, ::-1]
-    _lay(points, lines["contact"], face, refuse)
+    _lay(points, lines["contact"], unit, face, refuse)
     used, numbers = np.unique(corners, return_inverse=True)
     place = np.full(len(points), -1)
     place[used] = np.arange(len(used))
@@ -322,9 +322,14 @@ def _way(points: _Array, edges: _Indices) -> int:
     return int(ways[0, 0]) if joined and (ways == ways[0]).all() else 0
 
 
-def _lay(points: _Array, contact: _Indices, face: Callable[[_Array], _Array] | None, refuse: Refuse) -> None:
+def _lay(
+    points: _Array, contact: _Indices, unit: float, face: Callable[[_Array], _Array] | None, refuse: Refuse
+) -> None:
     """Shift ``points`` along y so that the contact line touches y = 0."""
     x, y = points[np.unique(contact)].T
+    if not x.min() < 0 < x.max():
+        low, high = x.min() / unit, x.max() / unit
+        refuse(f"contact line must have x = 0 inside; in the file it is from x = {low:g} to {high:g}: move the body")
     height = y + (face(x) if face else 0.0)
     off = np.ptp(height) / np.ptp(x)
     if not off <= _OFF:

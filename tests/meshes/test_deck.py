@@ -158,7 +158,7 @@ def layouts(mesh, text):
             text, back=f"*NSET, NSET=b\n{nodes_of_back}*SURFACE, TYPE=NODE, NAME=BACK\nb, 1.\n"
         ),
         "instances": f"*PART, NAME=FLAT\n{part}*END PART\n*ASSEMBLY, NAME=A\n"
-        f"*INSTANCE, NAME=FLAT-1, PART=FLAT\n3., 0.\n{turn}\n*END INSTANCE\n"
+        f"*INSTANCE, NAME=FLAT-1, PART=FLAT\n0.125, 0.\n{turn}\n*END INSTANCE\n"
         "*INSTANCE, NAME=FLAT-2, PART=FLAT\n0., 9.\n*END INSTANCE\n"
         f"*NSET, NSET=BACK, INSTANCE=FLAT-1\n{nodes_of_back}*NODE\n1, 0, 20\n*END ASSEMBLY\n",
     }
@@ -169,8 +169,14 @@ def test_layouts_of_decks_make_no_difference(mesh, text, tmp_path):
         placed = layout == "instances"
         back = read(FIELD, at(tmp_path, made), body="flat-1" if placed else None)
         assert made != text, layout
-        assert np.abs(back.points - [3 * placed, 0] - mesh.points).max() <= 1e-15 * placed * 4, layout
+        assert np.abs(back.points - [0.125 * placed, 0] - mesh.points).max() <= 1e-15 * placed * 4, layout
         assert same(replace(back, points=mesh.points), mesh), layout
+
+
+def test_a_body_beside_the_contact_is_told_where_it_is(mesh, text, tmp_path):
+    made = layouts(mesh, text)["instances"].replace("0.125, 0.", "9., 0.")
+    told = line_of(read, FIELD, at(tmp_path, made), body="flat-1")
+    assert "contact line must have x = 0 inside; in the file it is from x = 8.7 to 9.3: move the body" in told
 
 
 def test_a_part_with_one_instance_has_both_names(mesh, text, tmp_path):

@@ -103,4 +103,4 @@ def test_what_a_file_has_is_told(both):
     told = line_of(read, FIELD, path, body="flat")
     assert "must have a group 'contact'" in told
     assert "the file has flat-contact, flat-face, flat-back" in told
-    assert "type groups = { contact = ... }" in told
+    assert 'type groups = { contact = "..." }' in told

@@ -473,7 +473,8 @@ def _require_convex_within_noise(x: Array, residuals: Array, keys: ProfileFile, 
     if deviation > _SURE * noise:
         raise InputError(
             f"profile.file: {keys.file}: at x = {at:.6g} m the points are off any convex gap by "
-            f"{abs(mean):.2g} m on average over profile.smooth, more than noise of {noise:.2g} m explains; "
+            f"{abs(mean):.2g} m on average over profile.smooth, where noise of {noise:.2g} m a point leaves at most "
+            f"{_SURE * noise * abs(mean) / deviation:.2g} m; "
             "correct the points, or take a shorter smoothing length"
         )
 
