@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from partialslip.tools.errors import InputError
-from partialslip_meshes.found import Found, Indices, joined
+from partialslip_meshes.found import Found, Group, Indices, joined
 
 # fixed: types of elements by their nodes; letters behind (R, I, H, M, T, ...) change nothing of the shape
 # (meshio writes triangles as R3D3 and quadrilaterals as CAX4P)
@@ -28,7 +28,7 @@ _OF_BEAM = {"1": 2, "2": 3, "3": 2}  # fixed: nodes by the order of a beam
 _UNREAD = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "TRANSLATE", "SUBMODEL"}
 _KEYWORD = re.compile(r"[\w /+-]*$")
 _PARAMETER = re.compile(r'([^,="]+)(?:=\s*("[^"]*"|[^,]*))?')
-_FACE = re.compile(r"S([1-4])$")
+_FACE = re.compile(r"[SE]([1-6])$")  # of shells E1 to E4, or S3 to S6 as CalculiX counts
 
 
 class _Card(NamedTuple):
@@ -60,7 +60,8 @@ class _Scope:
     name: str = ""
     nodes: list[tuple[Indices, npt.NDArray[np.float64]]] = field(default_factory=list)
     elements: list[_Block] = field(default_factory=list)
-    left_out: list[str] = field(default_factory=list)  # types of elements that are no part of a body
+    left_out: list[str] = field(default_factory=list)  # types of elements that are no part of a body, and
+    unused: list[Indices] = field(default_factory=list)  # their numbers
     sets: list[tuple[str, str, _Card | Indices]] = field(default_factory=list)
 
 
@@ -96,7 +97,7 @@ def _cards(text: str) -> Iterator[_Card]:
         head, below = lines[start], start + 1
         while head.endswith(",") and below < stop:
             head, below = head + lines[below], below + 1
-        keyword, _, rest = head[1:].partition(",")
+        keyword, _, rest = head[1:].replace("\t", " ").partition(",")
         if not _KEYWORD.match(keyword):
             raise InputError(f"must have keywords and commas as in Abaqus; {head!r} has others")
         found = ((key.strip().upper(), value.strip().strip('"').strip()) for key, value in _PARAMETER.findall(rest))
@@ -109,6 +110,7 @@ class _Mesh:
     def __init__(self, cards: Sequence[_Card]) -> None:
         self.points: list[npt.NDArray[np.float64]] = [np.empty((0, 3))]
         self.cells: list[tuple[str, Indices]] = []
+        self.shells: list[bool] = []  # whether a block is of shells
         self.lines: list[Indices] = []  # edges of line elements
         self.counted = [0, 0]  # nodes, plane elements
         parts: dict[str, _Scope] = {}
@@ -124,7 +126,7 @@ class _Mesh:
                 if part and part not in parts:
                     raise InputError(f"*INSTANCE {name}: PART = {card.parameters['PART']!r} is no *PART of the deck")
                 own = parts.get(part, _Scope())
-                here = _Scope(name, [*own.nodes], [*own.elements], own.left_out, [*own.sets])
+                here = _Scope(name, [*own.nodes], [*own.elements], own.left_out, [*own.unused], [*own.sets])
                 instances.append((here, [card]))
             elif card.keyword in ("END PART", "END INSTANCE", "ASSEMBLY", "END ASSEMBLY"):
                 here = whole
@@ -165,6 +167,7 @@ class _Mesh:
             if block.cell:
                 begin, self.counted[1] = self.counted[1], self.counted[1] + len(ends)
                 self.cells.append((block.cell, ends))
+                self.shells.append(block.kind.startswith("S"))
                 places.append(begin + np.arange(len(ends)))
             else:
                 places.append(-1 - sum(map(len, self.lines)) - np.arange(len(ends)))
@@ -177,18 +180,27 @@ class _Mesh:
         scope, found = placed.scope, self.found
         if scope.name:
             found.group(scope.name).elements.append(placed.elements[1][placed.elements[1] >= 0])
-        for kind, name in dict.fromkeys((kind, name.lower()) for kind, name, _ in scope.sets):
+        kinds = dict.fromkeys((kind, name.lower()) for kind, name, _ in scope.sets)
+        for kind, name in sorted(kinds, key=lambda each: each[0] == "SURFACE"):  # goes before a set of the same name
             shown = next(each for _, each, _ in scope.sets if each.lower() == name)
             for key in (shown, f"{scope.name}.{shown}") if scope.name else (shown,):
                 group = found.group(key)
-                if kind == "NSET":
-                    group.nodes.append(self._nodes(placed, name))
-                elif kind == "ELSET":
-                    members = self._elements(placed, name)
-                    group.elements.append(members[members >= 0])
-                    group.edges.append(joined(self.lines, 2)[-1 - members[members < 0]])
-                else:
-                    self._surface(placed, name, group.nodes, group.edges)
+                try:
+                    self._fill(group, placed, kind, name)
+                except InputError as error:
+                    group.fault = str(error)
+
+    def _fill(self, group: Group, placed: _Placed, kind: str, name: str) -> None:
+        """Add the members of a set or surface to the ``group``."""
+        if kind == "NSET":
+            group.nodes.append(self._nodes(placed, name))
+        elif kind == "ELSET":
+            members = self._elements(placed, name)
+            group.elements.append(members[members >= 0])
+            group.edges.append(joined(self.lines, 2)[-1 - members[members < 0]])
+        else:
+            group.nodes, group.edges = [], []
+            self._surface(placed, name, group.nodes, group.edges)
 
     def _nodes(self, placed: _Placed, name: str, above: tuple[str, ...] = ()) -> Indices:
         """Indices of the nodes of the set ``name`` of a scope."""
@@ -207,8 +219,7 @@ class _Mesh:
         found = []
         for own in _of(placed, "ELSET", name, above):
             for where, numbers, names in _members(placed, own):
-                ids, places = where.elements
-                found.append(places[np.isin(ids, numbers)])
+                found.append(_numbered(where, numbers, f"the set {name!r}"))
                 found += [self._elements(where, each, (*above, name)) for each in names]
         return np.unique(joined(found))
 
@@ -225,7 +236,14 @@ class _Mesh:
         """Add what the ``*SURFACE`` of this ``name`` has to ``nodes`` and ``edges``."""
         for card in _of(placed, "SURFACE", name, ()):
             assert isinstance(card, _Card)
-            of_nodes = card.parameters.get("TYPE", "ELEMENT").upper() == "NODE"
+            kind, joins = card.parameters.get("TYPE", "ELEMENT").upper(), card.parameters.get("COMBINE", "").upper()
+            if kind not in ("ELEMENT", "NODE") or joins not in ("", "UNION"):
+                raise InputError(f"must be a surface of elements or nodes; {name!r} is of {joins or kind}")
+            if joins:
+                for other in (each for row in card.rows for each in row if each):
+                    self._surface(placed, other.lower(), nodes, edges)
+                continue
+            of_nodes = kind == "NODE"
             for member, label, *_ in ([*row, ""] for row in card.rows):
                 where, own = _split(placed, member)
                 numbers = _integers([own], "SURFACE") if own.isdecimal() else None
@@ -236,28 +254,42 @@ class _Mesh:
                     )
                     nodes.append(found)
                     continue
-                ids, places = where.elements
-                chosen = self._elements(where, own.lower()) if numbers is None else places[np.isin(ids, numbers)]
+                told = f"the surface {name!r}"
+                chosen = self._elements(where, own.lower()) if numbers is None else _numbered(where, numbers, told)
                 face = _FACE.match(label.upper())
                 edges.append(joined(self.lines, 2)[-1 - chosen[chosen < 0]])
-                edges.append(self._sides(chosen[chosen >= 0], int(face[1]) if face else 0))
+                edges.append(self._sides(chosen[chosen >= 0], label.upper() if face else ""))
 
-    def _sides(self, members: Indices, face: int) -> Indices:
-        """Edges of elements: side ``face``, or with 0 the sides that belong to one of the elements only."""
-        begin, found = 0, []
-        for kind, cells in self.cells:
-            own = cells[members[(members >= begin) & (members < begin + len(cells))] - begin]
+    def _sides(self, members: Indices, face: str) -> Indices:
+        """Edges of elements: side ``face``, as S3; or of an empty one the sides that no other element has."""
+        begin, found, every = 0, [], []
+        for (kind, cells), shell in zip(self.cells, self.shells, strict=True):
+            own = members[(members >= begin) & (members < begin + len(cells))] - begin
             begin += len(cells)
             count = 3 if kind.startswith("triangle") else 4
-            sides = np.stack([own[:, :count], np.roll(own[:, :count], -1, axis=1)], axis=-1)
-            if face > count:
-                raise InputError(f"must have sides of elements that exist; an element {kind} has no side S{face}")
-            found.append(sides[:, face - 1] if face else sides.reshape(-1, 2))
-        every = joined(found, 2)
+            sides = np.stack([cells[:, :count], np.roll(cells[:, :count], -1, axis=1)], axis=-1)
+            every.append(sides.reshape(-1, 2))
+            if not len(own):
+                continue
+            side = int(face[1]) - (2 if shell and face[0] == "S" else 0) if face else 1
+            if not 1 <= side <= count:
+                raise InputError(f"must have sides of elements that exist; an element {kind} has no side {face}")
+            found.append(sides[own, side - 1] if face else sides[own].reshape(-1, 2))
+        chosen = joined(found, 2)
         if face:
-            return every
-        _, place, times = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
-        return every[place[times == 1]]
+            return chosen
+        _, place, times = np.unique(np.sort(joined(every, 2), axis=1), axis=0, return_inverse=True, return_counts=True)
+        single = np.sort(joined(every, 2)[times[place.ravel()] == 1], axis=1) @ [1 << 31, 1]
+        return chosen[np.isin(np.sort(chosen, axis=1) @ [1 << 31, 1], single)]
+
+
+def _numbered(placed: _Placed, numbers: Indices, told: str) -> Indices:
+    """Places of the elements of a scope with these ``numbers``; those that are no part of a body have none."""
+    ids, places = placed.elements
+    missing = numbers[~np.isin(numbers, [*ids, *joined(placed.scope.unused)])]
+    if len(missing):
+        raise InputError(f"must have elements that exist; {told} has the element {missing[0]}")
+    return places[np.isin(ids, numbers)]
 
 
 def _refuse_unread(card: _Card) -> None:
@@ -285,6 +317,7 @@ def _collect(scope: _Scope, card: _Card) -> None:
             scope.elements.append(block)
         else:
             scope.left_out.append(card.parameters["TYPE"])
+            scope.unused.append(_integers([row[0] for row in card.rows if row[0]], "ELEMENT"))
         if "ELSET" in card.parameters:
             scope.sets.append(("ELSET", card.parameters["ELSET"], block.rows[:, 0] if block else joined([])))
     elif card.keyword in ("NSET", "ELSET"):
@@ -342,8 +375,14 @@ def _members(placed: _Placed, own: _Card | Indices) -> Iterator[tuple[_Placed, I
     for row in own.rows:
         given = [each for each in row if each]
         if "GENERATE" in own.parameters:
-            low, high, step = (*_integers(given, own.keyword).tolist(), 1, 1, 1)[:3] if len(given) > 1 else (0, -1, 1)
-            yield target, np.arange(low, high + 1, max(step, 1), dtype=np.int64), []
+            bounds = _integers(given, own.keyword).tolist()
+            low, high, step = [*bounds, *[bounds[-1], bounds[-1], 1][len(bounds) :]][:3] if bounds else (0, -1, 1)
+            if high < low or step < 1:
+                raise InputError(
+                    f"must have a first number, a last one and a step below GENERATE, not {', '.join(row)}"
+                )
+            ids = target.nodes[0] if own.keyword == "NSET" else target.elements[0]
+            yield target, ids[(ids >= low) & (ids <= high) & ((ids - low) % step == 0)], []
             continue
         yield target, _integers([each for each in given if each.isdecimal()], own.keyword), []
         for where, member in (_split(target, each) for each in given if not each.isdecimal()):
@@ -371,7 +410,8 @@ def _ascending(numbers: Indices, places: Indices, of: str) -> tuple[Indices, Ind
 def _coordinates(rows: Sequence[Sequence[str]]) -> npt.NDArray[np.float64]:
     """Coordinates (n, 3) of lines of ``*NODE``; those that are left out are zero."""
     try:
-        return np.array([[float(each or 0) for each in ([*row[1:4], "", ""])[:3]] for row in rows]).reshape(-1, 3)
+        exact = [[each.upper().replace("D", "E") for each in ([*row[1:4], "", ""])[:3]] for row in rows]
+        return np.array([[float(each or 0) for each in row] for row in exact]).reshape(-1, 3)
     except ValueError:
         raise InputError("must have numbers as coordinates below *NODE") from None
 
@@ -408,6 +448,8 @@ def _shift(card: _Card) -> _Shift:
         rows = [[float(each or 0) for each in row] for row in card.rows]
     except ValueError:
         raise InputError("must have numbers below *INSTANCE") from None
+    if not np.isfinite([each for row in rows for each in row]).all():
+        raise InputError("must have finite numbers below *INSTANCE")
     shift = np.array(([*rows[0], 0.0, 0.0, 0.0] if rows else [0.0] * 3)[:3])
     if len(rows) < 2:
         return _Shift(shift)

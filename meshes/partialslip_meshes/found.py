@@ -17,12 +17,14 @@ _PHYSICAL, _FAMILY = "gmsh:physical", "cell_tags"
 
 @dataclass
 class Group:
-    """Members of a group ``name``: indices of nodes, edges (e, 2) by their nodes, and numbers of elements."""
+    """Members of a group ``name``: indices of nodes, edges (e, 2) by their nodes, and numbers of elements. ``fault``
+    says why it cannot be read, which matters only to who asks for it."""
 
     name: str
     nodes: list[Indices] = field(default_factory=list)
     edges: list[Indices] = field(default_factory=list)
     elements: list[Indices] = field(default_factory=list)
+    fault: str = ""
 
 
 @dataclass

@@ -83,6 +83,9 @@ def read(
     lines = {key: edges for key, edges in _named_lines(found, corners, boundary, groups or {}, refuse) if len(edges)}
     for key in ("contact", *needed):
         if key not in lines:
+            asked = found.groups.get(str((groups or {}).get(key, key)).lower())
+            if asked and (asked.nodes or asked.edges):
+                refuse(f"group {asked.name!r} must have an edge of the boundary of the body")
             here = found.named(bodies=False)
             others = (
                 f'the file has {here}: type groups = {{ {key} = "..." }}' if here else "the file has no groups of them"
@@ -172,6 +175,8 @@ def _chosen(found: Found, body: str | int | None, refuse: Refuse) -> npt.NDArray
     if body is None:
         return np.ones(count, dtype=bool)
     group = found.groups.get(str(body).lower())
+    if group and group.fault:
+        refuse(f"group {body!r}: {group.fault}")
     chosen = np.zeros(count, dtype=bool)
     chosen[joined(group.elements) if group else []] = True
     if not chosen.any():
@@ -214,6 +219,9 @@ def _triangles(found: Found, points: _Array, chosen: npt.NDArray[np.bool_], refu
             if (np.linalg.norm(off, axis=-1) > _MIDDLE * np.linalg.norm(sides, axis=-1)).any():
                 refuse("nodes of quadratic elements must be in order: corners, then middles of the sides")
         corners = cells[:, :count]
+        if count == 4 and (flat := corners[:, 2] == corners[:, 3]).any():  # triangles written as quadrilaterals
+            parts.append(corners[flat, :3])
+            corners, ring, sides = corners[~flat], ring[~flat], sides[~flat]
         if count == 4:
             turns = _cross(sides, np.roll(sides, -1, axis=1))
             if not ((turns > 0).all(axis=1) | (turns < 0).all(axis=1)).all():
@@ -287,6 +295,8 @@ def _named_lines(
     for line in BOUNDARY_NAMES:
         wanted = str(names.get(line, line))
         group = found.groups.get(wanted.lower())
+        if group and group.fault:
+            refuse(f"group {wanted!r}: {group.fault}")
         if line in names and not (group and (group.nodes or group.edges)):
             here = found.named(bodies=False) or "no groups of edges or nodes"
             refuse(f"must have the group {wanted!r} of edges or nodes for {line!r}; the file has {here}")

@@ -121,8 +121,8 @@ def same(back, mesh):
     return np.array_equal(back.points, mesh.points) and edges[: len(edges) // 2] == edges[len(edges) // 2 :]
 
 
-def faces(mesh, name):
-    """A surface by the sides of elements that make up a line."""
+def faces(mesh, name, letter="S", first=0):
+    """A surface by the sides of elements that make up a line, which are counted from ``first`` + 1."""
     wanted = {tuple(pair) for pair in np.sort(mesh.lines[name], axis=1).tolist()}
     found = {}
     for number, corners in enumerate(mesh.triangles.tolist(), start=1):
@@ -131,7 +131,8 @@ def faces(mesh, name):
                 found.setdefault(side + 1, []).append(number)
     numbers = {side: "".join(f"{each},\n" for each in those) for side, those in found.items()}
     sets = "".join(f"*ELSET, ELSET=_{name}_S{side}\n{those}" for side, those in numbers.items())
-    return sets + f"*SURFACE, TYPE=ELEMENT, NAME={name}\n" + "".join(f"_{name}_S{side}, S{side}\n" for side in found)
+    labels = "".join(f"_{name}_S{side}, {letter}{side + first}\n" for side in found)
+    return sets + f"*SURFACE, TYPE=ELEMENT, NAME={name}\n{labels}"
 
 
 def listed(text, name):
@@ -157,6 +158,18 @@ def layouts(mesh, text):
         "a surface of nodes": sets_as(
             text, back=f"*NSET, NSET=b\n{nodes_of_back}*SURFACE, TYPE=NODE, NAME=BACK\nb, 1.\n"
         ),
+        "generated": sets_as(text, back="*NSET, NSET=back, GENERATE\n1\n3\n36, 40\n"),
+        "numbers far beyond": text + "*NSET, NSET=back, GENERATE\n1, 99999999999999, 99999999\n",
+        "a rigid surface": text + "*SURFACE, TYPE=SEGMENTS, NAME=RIGID\nSTART, -1., 1.\nLINE, 1., 1.\n",
+        "a union of surfaces": sets_as(
+            text, back=faces(mesh, "back").replace("NAME=back", "NAME=b") + "*SURFACE, NAME=back, COMBINE=UNION\nb\n"
+        ),
+        "exponents of Fortran": text.replace("e+00,", "D+00,"),
+        "edges of shells": sets_as(text, back=faces(mesh, "back", "E")).replace("R3D3", "S3"),
+        "sides of shells, by CalculiX": sets_as(text, back=faces(mesh, "back", "S", 2)).replace("R3D3", "S3"),
+        "triangles as quadrilaterals": re.sub(
+            r"R3D3\n((?:[^*].*\n)*)", lambda found: "CPE4\n" + re.sub(r",(\d+)\n", r",\1,\1\n", found[1]), text
+        ),
         "instances": f"*PART, NAME=FLAT\n{part}*END PART\n*ASSEMBLY, NAME=A\n"
         f"*INSTANCE, NAME=FLAT-1, PART=FLAT\n0.125, 0.\n{turn}\n*END INSTANCE\n"
         "*INSTANCE, NAME=FLAT-2, PART=FLAT\n0., 9.\n*END INSTANCE\n"
@@ -171,6 +184,20 @@ def test_layouts_of_decks_make_no_difference(mesh, text, tmp_path):
         assert made != text, layout
         assert np.abs(back.points - [0.125 * placed, 0] - mesh.points).max() <= 1e-15 * placed * 4, layout
         assert same(replace(back, points=mesh.points), mesh), layout
+
+
+@pytest.mark.parametrize(("lines", "said"), [
+    ("*SURFACE, NAME=CONTACT\n99999, S3\n", "must have elements that exist; the surface 'contact' has"),
+    ("*SURFACE, NAME=CONTACT, TYPE=SEGMENTS\nSTART, -1., 1.\n", "'contact' is of SEGMENTS"),
+    ("*NSET, NSET=contact, GENERATE\n9, 3\n", "a first number, a last one and a step below GENERATE, not 9, 3"),
+])  # fmt: skip
+def test_groups_that_cannot_be_meant_are_told(text, tmp_path, lines, said):
+    assert said in line_of(read, FIELD, at(tmp_path, text + lines))
+
+
+def test_a_group_of_the_other_body_is_told(text, tmp_path):
+    told = line_of(read, FIELD, at(tmp_path, doubled(text)), body="INSERT", groups={"contact": "FLAT.contact"})
+    assert "group 'FLAT.contact' must have an edge of the boundary of the body" in told
 
 
 def test_a_body_beside_the_contact_is_told_where_it_is(mesh, text, tmp_path):
