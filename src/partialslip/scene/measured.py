@@ -287,7 +287,7 @@ def _refuse_outliers(worst: str, scatter: float, keys: ProfileFile) -> NoReturn:
     """Raise InputError: the points scatter more than noise does; the ``worst`` is farthest off."""
     raise InputError(
         f"profile.file: {keys.file}: {worst}: no data? take these rows out; the points scatter by {scatter:.2g} of the "
-        "range of the gaps: if the surface is that rough, give profile.noise"
+        "smoothed range: if the surface is that rough, give profile.noise"
     )
 
 

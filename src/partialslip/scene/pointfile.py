@@ -229,7 +229,8 @@ def read_points(
     x, gap, rows, table = _rows_of(file, unit, columns)
     if len(np.unique(x)) < _FEWEST:
         raise InputError(f"profile.file: {file}: must have at least {_FEWEST} different x, not {len(np.unique(x))}")
-    lost = min((np.maximum.accumulate(x) - x, x - np.minimum.accumulate(x)), key=np.max)
+    forward = x if x[-1] >= x[0] else -x
+    lost = np.maximum.accumulate(forward) - forward
     if lost.max() > back:
         row = rows[int((lost > back).argmax())]
         raise InputError(
@@ -247,7 +248,9 @@ def line_of_gap(file: str, unit: tuple[float, float], columns: tuple[int, int], 
     return f"{table.columns[columns[1] - 1][row]} at line {table.lines[row]}"
 
 
-def _rows_of(file: str, unit: tuple[float, float], columns: tuple[int, int]) -> tuple[Array, Array, Array, TextTable]:
+def _rows_of(
+    file: str, unit: tuple[float, float], columns: tuple[int, int]
+) -> tuple[Array, Array, list[int], TextTable]:
     """x and gap in the order of the file, (n,) each, the rows of the table in which they are, and the table."""
     table = _table(file)
     if max(columns) > len(table.names):
@@ -261,4 +264,4 @@ def _rows_of(file: str, unit: tuple[float, float], columns: tuple[int, int]) -> 
             raise InputError(f"profile.file: {file}: line {table.lines[row]}: {field}: must be {sizes}")
     known = np.isfinite(numbers[0]) & np.isfinite(numbers[1])
     x, gap = (column[known] * each for column, each in zip(numbers, unit, strict=True))
-    return x, gap, np.flatnonzero(known), table
+    return x, gap, np.flatnonzero(known).tolist(), table
