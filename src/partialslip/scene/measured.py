@@ -4,208 +4,27 @@ The gap is the integral of a slope that is linear between points one smoothing l
 The slope must not decrease. Of all such gaps the nearest one to the points is taken, by least squares.
 """
 
-import re
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, NoReturn
 
 import msgspec
 import numpy as np
 
-from partialslip.scene.columns import LENGTH_WORDS, place_of
-from partialslip.scene.table import LARGEST, SMALLEST, Positive, Table
-from partialslip.scene.texttable import TextTable, decoded, read_table
-from partialslip.scene.units import LENGTHS
+from partialslip.scene.pointfile import columns_of, is_named_gap, line_of_gap, read_points
+from partialslip.scene.table import Positive, Table
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
-from partialslip.tools.inputfile import read_bytes
 
 if TYPE_CHECKING:
     from partialslip.scene import Scene
     from partialslip.scene.reading import AnyScene
 
-_LARGEST = 20_000_000  # limit: bytes of a file of points
-_FEWEST = 10  # limit: points
-_COLUMNS = 2  # fixed: x and gap
-# fixed: first words of the names of columns
-_ALONG = {"x", "length", "distance", "position", "pos", "lateral", "way"}
-_GAPS = {"gap", "depth", "z", "height", "profile", "h"}
-_BRACKETS = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
-_WORD = re.compile(r"[^\W\d_]+")
-_CELLS = re.compile(r"[,;\t]|\s{2,}")
-_AMOUNT = re.compile(r"\d\s*[^\W\d_]+(?:/\w+)?")  # fixed: such as 0.5 mm/s: the unit of no column
-_ENGLISH = {"m", "in"}  # fixed: units that are also names or words
-_IN_FULL = re.compile(
-    r"(?:milli|micro|nano|centi|kilo)?met(?:er|re)s?|microns?|inch(?:es)?|mils?|thou|foot|feet|ft|\N{ANGSTROM SIGN}|"
-    r"\N{LATIN CAPITAL LETTER A WITH RING ABOVE}|angstroms?|pm|km|dm",
-    re.IGNORECASE,
-)
 _COARSEST, _MOST = 3, 1000  # limit: intervals and points of a table
 _SURE = 5.0  # accuracy: standard deviations of a mean over a smoothing length that are not taken for noise
+_ROUGHEST = 1e-2  # limit: of the range of the gaps: scatter of the points that is taken for noise unless it is given
 _FOLDED = 0.2  # limit: of one side of a trace: largest other side that is taken for a part of an even gap
-_ROUNDING = 1e-12  # accuracy: relative: difference of units, and misfit in the largest gap, that is taken for rounding
+_ROUNDING = 1e-12  # accuracy: misfit in the largest gap that is taken for rounding
 # msgspec 0.20 fails on a union of a number and a tuple of fixed length
 ColumnUnit = Positive | Annotated[tuple[Positive, ...], msgspec.Meta(min_length=2, max_length=2)]
-
-
-class PointColumns(NamedTuple):
-    """Columns of a file of points: their numbers from 1, x first, and their units, m; that of heights is negative."""
-
-    numbers: tuple[int, int]
-    unit: tuple[float, float]
-
-
-def columns_of(
-    file: str, given: float | tuple[float, ...] | None, length: float, chosen: tuple[int | str, ...] | None = None
-) -> PointColumns:
-    """Return the columns x and gap of ``file``, and their units in ``length`` (m).
-
-    Parameters
-    ----------
-    file : str
-    given : float or tuple of float or None
-        ``profile.unit``, of both columns or of each, in ``length``.
-    length : float
-    chosen : (int or str, int or str), optional
-        ``profile.columns``, names or numbers from 1; by default those of a file of two, or those that are named so.
-
-    Raises
-    ------
-    InputError
-        If columns are not found, ``given`` is not that of the heading, nothing is given and the heading names units
-        that cannot be read, or the heading names x as the second column.
-    """
-    table = _table(file)
-    x, gap = _places(table, file, chosen)
-    lines = table.before
-    if len(table.names) > _COLUMNS:
-        lines = [f"{table.names[x]}; {table.names[gap]}"] if table.head else []
-    elif not chosen and (swapped := next((line for line in lines if _is_swapped(line)), "")):
-        raise InputError(f"profile.file: {file}: heading {swapped.strip()!r:.60}: the columns must be x, then gap")
-    units = _units(file, lines, given, length)
-    return PointColumns((x + 1, gap + 1), units)
-
-
-def is_named_gap(file: str, column: int) -> bool:
-    """Whether ``column`` of ``file``, from 1, has a name that says that it is no height."""
-    table = _table(file)
-    return table.head > 0 and "gap" in table.names[column - 1].lower()
-
-
-def _table(file: str) -> TextTable:
-    origin = f"profile.file: {file}"
-    return read_table(decoded(read_bytes(file, _LARGEST), origin)[0], origin, loose=True)
-
-
-def _places(table: TextTable, file: str, chosen: tuple[int | str, ...] | None) -> tuple[int, int]:
-    """Indices of the columns x and gap."""
-    names, shown = table.names, ", ".join(map(repr, table.names))[:100]
-    if chosen:
-        places = [place_of(str(each), names) for each in chosen]
-        for each, place in zip(chosen, places, strict=True):
-            if place is None:
-                raise InputError(f"profile.columns: {each!r}: must be one of {shown}, once, or a number from 1")
-        return tuple(places)  # type: ignore[return-value]
-    filled = [k for k, column in enumerate(table.columns) if any(column)]
-    if len(filled) == _COLUMNS:
-        return filled[0], filled[1]
-    first = [(_WORD.findall(name) or [""])[0].lower() for name in names]
-    x, gap = ([k for k in filled if first[k] in words] for words in (_ALONG, _GAPS))
-    if not (table.head and len(x) == len(gap) == 1):
-        raise InputError(
-            f"profile.file: {file}: {len(names)} columns, {shown}: must have two, x and gap; or name both by "
-            "profile.columns, for example [2, 3]"
-        )
-    return x[0], gap[0]
-
-
-def _units(file: str, lines: list[str], given: float | tuple[float, ...] | None, length: float) -> tuple[float, float]:
-    """Units of x and gap in ``length``: those ``given`` or those in the ``lines`` of a heading."""
-    words = next(filter(None, map(_stated, reversed(lines))), [])
-    known = [LENGTH_WORDS.get(word.strip().lower()) for word in words]
-    shown = " and ".join(f"[{word}]" for word in words)
-    stated = None if None in known else [factor / length for factor in known if factor]
-    if given is None:
-        if stated is None:
-            allowed = ", ".join(dict.fromkeys(LENGTHS))
-            raise InputError(
-                f"profile.file: {file}: units {shown} in the heading: must be of {allowed}, or give profile.unit"
-            )
-        if not stated and (unread := next(filter(None, map(_unread, lines)), "")):
-            raise InputError(
-                f"profile.file: {file}: unit {unread!r} in the heading: must stand behind the name of each column, as "
-                "in x [mm], gap [um], or give profile.unit"
-            )
-        return (stated[0], stated[-1]) if stated else (1.0, 1.0)
-    x, gap = given if isinstance(given, tuple) else (given, given)
-    if stated and not np.allclose((x, gap), stated, rtol=_ROUNDING, atol=0.0):
-        raise InputError(f"profile.unit = {[x, gap]}: must be that of the heading of {file}, {shown}, or be left out")
-    return x, gap
-
-
-def _stated(line: str) -> list[str]:
-    """Words for the units of both columns in a ``line`` of the heading, or one that stands for both; empty if there are
-    none.
-
-    They are in brackets, in round ones only if they are units, or the last words of the columns' names.
-    """
-    words = ["".join(pair) for pair in _BRACKETS.findall(line)]
-    known = all(word.strip().lower() in LENGTH_WORDS for word in words)
-    if len(words) == _COLUMNS and (known or all(square for square, _ in _BRACKETS.findall(line))):
-        return words
-    cells = _column_words(line)
-    last = [names[-1] for names in cells]
-    if len(cells) == 1:
-        last = [word for word in cells[0] if word.lower() in LENGTH_WORDS.keys() - _ENGLISH]
-    if len(last) == _COLUMNS and all(word.lower() in LENGTH_WORDS for word in last):
-        return last
-    alone = len(words) == 1 and len(cells) == 1 and known and not _unread(line.replace(words[0], "", 1))
-    return words if alone else []
-
-
-def _column_words(line: str) -> list[list[str]]:
-    """Words of each column in a ``line`` of the heading."""
-    return [words for cell in _CELLS.split(line) if (words := _WORD.findall(cell))]
-
-
-def _is_swapped(line: str) -> bool:
-    """Whether a ``line`` of the heading names x as the second of two columns."""
-    first = [words[0].lower() for words in _column_words(line)]
-    return len(first) == _COLUMNS and first[1] == "x" != first[0]
-
-
-def _unread(line: str) -> str:
-    """First word of a ``line`` that is a unit of length, but not of an amount; empty if there is none."""
-    words = _WORD.findall(_AMOUNT.sub("", line))
-    return next((each for each in words if each.lower() in LENGTHS.keys() - _ENGLISH or _IN_FULL.fullmatch(each)), "")
-
-
-def read_points(
-    file: str, unit: tuple[float, float], columns: tuple[int, int] = (1, 2), centre: float = 0.0
-) -> tuple[Array, Array]:
-    """Read x and gap, (n,) each, times their ``unit``, sorted by x, from ``columns`` (from 1) of a table; x from
-    ``centre`` (m) on. Rows without values are left out.
-
-    Raises
-    ------
-    InputError
-        If the file is no table with these columns and at least ten different x, or a number is neither zero nor of a
-        size that a scene allows.
-    """
-    table = _table(file)
-    if max(columns) > len(table.names):
-        raise InputError(f"profile.file: {file}: {len(table.names)} columns: must have a column {max(columns)}")
-    numbers = [table.numbers(k - 1, f"profile.file: {file}") for k in columns]
-    for k, column, each in zip(columns, numbers, unit, strict=True):
-        size = np.abs(column * each)
-        if (wrong := (size > 0) & ((size < SMALLEST) | (size > LARGEST))).any():
-            row, sizes = int(wrong.argmax()), f"zero or of a size from {SMALLEST} to {LARGEST}"
-            field = table.columns[k - 1][row]
-            raise InputError(f"profile.file: {file}: line {table.lines[row]}: {field}: must be {sizes}")
-    known = np.isfinite(numbers[0]) & np.isfinite(numbers[1])
-    x, gap = (column[known] * each for column, each in zip(numbers, unit, strict=True))
-    order = np.lexsort((gap, x))
-    if len(np.unique(x)) < _FEWEST:
-        raise InputError(f"profile.file: {file}: must have at least {_FEWEST} different x, not {len(np.unique(x))}")
-    return x[order] - centre, gap[order]
 
 
 class ProfileFile(Table, frozen=True, kw_only=True):
@@ -274,12 +93,16 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If the file is no table of two columns, its heading has other units than ``keys`` or names units that cannot be
-        read, no convex gap follows the points within the noise, or x begins at 0 away from the lowest point.
+        If the file is no table of one trace, its heading has other units than ``keys`` or names units that cannot be
+        read, points lie far off, no convex gap follows them within the noise, or x begins at 0 away from the lowest
+        point.
     """
     columns, unit = columns_of(keys.file, keys.unit, length, keys.columns)
-    x, gap = read_points(keys.file, unit, columns)
-    if np.polyfit((x - x.mean()) / np.ptp(x), gap, 2)[0] < 0 and not is_named_gap(keys.file, columns[1]):
+    x, gap = read_points(
+        keys.file, unit, columns, back=keys.smooth
+    )  # within it the order of the points is of no effect
+    # full: no warning where few of the points tell the curvature
+    if np.polyfit((x - x.mean()) / np.ptp(x), gap, 2, full=True)[0][0] < 0 and not is_named_gap(keys.file, columns[1]):
         unit = (unit[0], -unit[1])  # heights
         x, gap = read_points(keys.file, unit, columns)
     centre = _lowest(x, gap, keys.smooth) if keys.centre == "auto" and x[0] == 0 else 0.0
@@ -289,6 +112,9 @@ def tabulated(keys: ProfileFile, length: float = 1.0) -> dict[str, Any]:
     fit = _fitted(x, gap, keys.smooth, True) if x[0] == 0 else turning
     spare = max(len(x) - len(fit.x) - 1, 1)
     scatter = float(np.sqrt(np.sum((gap - free.at) ** 2) / spare))
+    if not keys.noise and scatter > _ROUGHEST * (span := float(np.ptp(free.at))):
+        worst = line_of_gap(keys.file, unit, columns, float(gap[np.abs(gap - turning.at).argmax()]))
+        _refuse_outliers(worst, scatter / span, keys)
     noise = keys.noise or scatter
     sure = max(noise, _ROUNDING * float(np.ptp(gap)))
     _require_convex_within_noise(x, gap - turning.at, keys, sure)
@@ -455,6 +281,14 @@ def _integrated(at: Array, knots: Array, times: int) -> Array:
     beyond = np.maximum(at[:, None] - knots[1:-1], 0.0) ** times
     steps = np.concatenate([whole, beyond], axis=1) / times
     return np.column_stack([steps[:, :-1] - steps[:, 1:], steps[:, -1]])
+
+
+def _refuse_outliers(worst: str, scatter: float, keys: ProfileFile) -> NoReturn:
+    """Raise InputError: the points scatter more than noise does; the ``worst`` is farthest off."""
+    raise InputError(
+        f"profile.file: {keys.file}: {worst}: no data? take these rows out; the points scatter by {scatter:.2g} of the "
+        "smoothed range: if the surface is that rough, give profile.noise"
+    )
 
 
 def _refuse_mirror(fit: _Fit, keys: ProfileFile) -> NoReturn:
