@@ -279,3 +279,55 @@ def test_tables_are_read_once_decoded(tmp_path):
     path.write_bytes(text(ROWS, "x,p,q").encode("utf-16-le"))
     check(path)
     assert read_tractions(path, SCENE).p == pytest.approx(P, rel=1e-8)
+
+
+# --- what is no row, and what is none of a column
+
+
+SUMS = ("Max,0.289,418.104,118.9", "AVERAGE,0.01,93.2,20", '"Mittelwert",0.01,93.2,20', "Rz,1,2,3")
+
+
+@pytest.mark.parametrize("place", [1, 50, None])
+def test_rows_of_sums_are_no_points(tmp_path, place):
+    rows = text(np.column_stack([NODES, ROWS]), "Node,x,CPRESS,CSHEAR1").split("\n")
+    at = len(rows) if place is None else place
+    given = "\n".join([*rows[:at], *SUMS, *rows[at:]])
+    check(files(tmp_path, t__csv=given), "left out: 4 lines of sums or extremes")
+    semicolons = given.replace(",", ";").replace(".", ",")
+    check(files(tmp_path, t__csv=semicolons), "left out: 4 lines of sums or extremes")
+    for wrong, told in ((",0.05,26214,5200", "''"), ("Median,0.05,26214,5200", "'Median'")):
+        (path,) = files(tmp_path, t__csv="\n".join([*rows[:at], wrong, *rows[at:]]))
+        assert f"line {at + 1}: {told}: must be a number" in line_of(score, SCENE, path)
+
+
+@pytest.mark.parametrize("label", ["Node {}", "mean of faces", "Sum", "N{}"])
+def test_rows_may_begin_with_words(tmp_path, label):
+    rows = "".join(f"{label.format(k)},{line}\n" for k, line in enumerate(text(ROWS).split()))
+    check(files(tmp_path, t__csv=f"label,x,CPRESS,CSHEAR1\n{rows}"))
+
+
+def test_a_sum_among_rows_that_begin_with_words_is_refused(tmp_path):
+    rows = "".join(f"pad,{line}\n" for line in text(ROWS).split())
+    (path,) = files(tmp_path, t__csv=f"part,x,CPRESS,CSHEAR1\n{rows}Sum,0.05,26214,5200\n")
+    assert "line 143: 'Sum': must not be a sum" in line_of(score, SCENE, path)
+
+
+@pytest.mark.parametrize("none", ["1.#IND", "-1.#QNAN", "1.#INF00", "#N/A", "#DIV/0!"])
+@pytest.mark.parametrize("column", [0, 1, 2])
+def test_no_value_is_no_comment(tmp_path, none, column):
+    rows = text(ROWS, "x,CPRESS,CSHEAR1").split("\n")
+    fields = rows[70].split(",")
+    rows[69] += " # bad"
+    rows.insert(70, ",".join([*fields[:column], none, *fields[column + 1 :]]))
+    check(files(tmp_path, t__csv="\n".join(rows)), "left out: 1 row without values")
+
+
+def test_a_name_may_have_a_hash(tmp_path):
+    rows = text(np.column_stack([NODES, ROWS]), "Node #,x,CPRESS,CSHEAR1")
+    check(files(tmp_path, t__csv=rows))
+    check(files(tmp_path, t__txt=rows.replace(",", "\t")))
+
+
+def test_a_column_is_numbered_in_decimals(tmp_path):
+    (path,) = files(tmp_path, t__csv=text(ROWS, "x,CPRESS,CSHEAR1"))
+    assert "--columns ²: " in line_of(score, SCENE, path, columns={"x": "²", "p": "2", "q2": "3"})
