@@ -331,3 +331,50 @@ def test_a_name_may_have_a_hash(tmp_path):
 def test_a_column_is_numbered_in_decimals(tmp_path):
     (path,) = files(tmp_path, t__csv=text(ROWS, "x,CPRESS,CSHEAR1"))
     assert "--columns ²: " in line_of(score, SCENE, path, columns={"x": "²", "p": "2", "q2": "3"})
+
+
+# --- rows of several surfaces or load points
+
+
+def test_files_of_several_parts_steps_or_pairs_are_not_joined(tmp_path):
+    p, q = ("COORD.COOR1", "CPRESS"), ("COORD.COOR1", "CSHEAR1")
+    for part, step, told in (("PAD-1", "SHEAR", "p.rpt is of part FLAT-1, "), ("FLAT-1", "BACK", "of step SHEAR, ")):
+        pair = files(tmp_path, p__rpt=report([("FLAT-1", "SHEAR", ROWS[:, :2])], p),
+                     q__rpt=report([(part, step, ROWS[:, [0, 2]])], q))  # fmt: skip
+        assert told in line_of(score, SCENE, pair)
+    check(files(tmp_path, p__rpt=report([("FLAT-1", "SHEAR", ROWS[:, :2])], p),
+                q__rpt=report([("FLAT-1", "SHEAR", ROWS[:, [0, 2]])], q)))  # fmt: skip
+    pair = files(tmp_path, p__csv=text(ROWS[:, :2], "x,CPRESS   A1/B1"), q__csv=text(ROWS[:, ::2], "x,CSHEAR1   C1/D1"))
+    assert "is of pair A1/B1, " in line_of(score, SCENE, pair)
+    for part in ("FLAT-1", "PAD-1"):
+        pair = files(tmp_path, a__rpt=report([("FLAT-1", "BACK", FIRST)]), b__rpt=report([(part, "SHEAR", ROWS)]))
+        if part == "FLAT-1":
+            check(pair)
+        else:
+            assert "b.rpt is of part PAD-1, " in line_of(score, SCENE, pair)
+
+
+OTHER = ROWS * [1, 1, -1] + [1.3e-3, 0, 0]
+
+
+@pytest.mark.parametrize("name", ["Part Instance Name", "Time [s]", "substep", "t", "vtkCompositeIndex"])
+def test_a_column_of_any_name_tells_passes_apart(tmp_path, name):
+    rows = np.column_stack([np.repeat([1.0, 2.0], len(ROWS)), np.vstack([OTHER, ROWS])])
+    (path,) = files(tmp_path, t__csv=text(rows, f"{name},x,CPRESS,CSHEAR1"))
+    assert f'{name} is 1, 2: keep one, as by --where "{name}=' in line_of(score, SCENE, path)
+    check(path, where={name: "2"})
+
+
+@pytest.mark.parametrize("way", ["again", "back", "in turn"])
+def test_passes_without_a_column_are_refused(tmp_path, way):
+    both = np.vstack([ROWS, OTHER[::-1] if way == "back" else OTHER])
+    rows = both[np.argsort(both[:, 0], kind="stable")] if way == "in turn" else both
+    (path,) = files(tmp_path, t__csv=text(rows, "x,CPRESS,CSHEAR1"))
+    assert "rows are of 2 passes over the contact, which differ by" in line_of(score, SCENE, path)
+
+
+def test_corners_and_then_middles_are_one_pass(tmp_path):
+    """As meshes of quadratic elements number their nodes; and pairs left and right."""
+    check(files(tmp_path, t__csv=text(np.vstack([ROWS[::2], ROWS[1::2]]), "x,CPRESS,CSHEAR1")))
+    pairs = np.column_stack([np.abs(X), ROWS])[np.argsort(np.abs(X), kind="stable")]
+    check(files(tmp_path, t__csv=text(pairs, "radius,x,CPRESS,CSHEAR1")))

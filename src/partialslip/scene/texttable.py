@@ -62,6 +62,8 @@ class TextTable(NamedTuple):
         Lines from the first to the last of the heading, as they stand.
     notes : tuple of str
         What was left out.
+    labels : dict of str to str
+        What a report says that all rows are of: part, step, frame.
     """
 
     names: list[str]
@@ -70,6 +72,7 @@ class TextTable(NamedTuple):
     head: int = 0
     before: list[str] = []  # noqa: RUF012
     notes: tuple[str, ...] = ()
+    labels: dict[str, str] = {}  # noqa: RUF012
 
     def only(self, kept: list[int]) -> "TextTable":
         """The table with the ``kept`` rows alone."""
@@ -168,13 +171,15 @@ def read_table(text: str, origin: str, loose: bool = False) -> TextTable:
     if len(rows) > MOST_ROWS:
         raise InputError(f"{origin}: {len(rows)} rows: must be at most {MOST_ROWS}")
     columns = _columns(rows, form)
-    for name, values in _told_apart(blocks, len(rows)).items():
+    apart = _told_apart(blocks, len(rows))
+    for name, values in apart.items():
         names, columns = [*names, name], [*columns, values]
+    labels = {name: value for name, value in blocks[0][1].items() if name not in apart}
     if above := sum(bool(line.strip()) for line in bare[: head - 1 if head else first]):
         left["line above the heading", "lines above the heading"] = above
     told = [f"{count} {words[count > 1]}" for words, count in left.items()]
     notes = (f"left out: {', '.join(told)}",) if told else ()
-    return TextTable(names, columns, numbers, head, lines[: first or 1] if first else [], notes)
+    return TextTable(names, columns, numbers, head, lines[: first or 1] if first else [], notes, labels)
 
 
 def is_value(field: str) -> bool:

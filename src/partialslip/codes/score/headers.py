@@ -121,8 +121,7 @@ def known(names: list[str], asked: Asked) -> dict[str, Wanted]:
                 f"{asked.origin}: column {name!r}: must be there once, not {len(places)} times ({told}); use --columns"
             )
     wanted = {name: each[0] for name, each in found.items() if each}
-    pairs = {name: _PAIR.match(split_unit(each.text)[0]) for name, each in wanted.items()}
-    of = {match[2] for match in pairs.values() if match}
+    of = pairs(wanted)
     if len(of) > 1:
         raise InputError(f"{asked.origin}: columns of the pairs {', '.join(sorted(of))}: must be of one; use --columns")
     return _complete(wanted, names, asked)
@@ -167,6 +166,11 @@ def selected(names: list[str], chosen: Mapping[str, str], asked: Asked) -> dict[
             if not asked.part:
                 raise
     return _complete(wanted, names, asked)
+
+
+def pairs(wanted: Mapping[str, Wanted]) -> set[str]:
+    """Pairs of surfaces that the names of the ``wanted`` columns state."""
+    return {match[2] for each in wanted.values() if (match := _PAIR.match(split_unit(each.text)[0]))}
 
 
 def shown(names: list[str]) -> str:
