@@ -378,3 +378,41 @@ def test_corners_and_then_middles_are_one_pass(tmp_path):
     check(files(tmp_path, t__csv=text(np.vstack([ROWS[::2], ROWS[1::2]]), "x,CPRESS,CSHEAR1")))
     pairs = np.column_stack([np.abs(X), ROWS])[np.argsort(np.abs(X), kind="stable")]
     check(files(tmp_path, t__csv=text(pairs, "radius,x,CPRESS,CSHEAR1")))
+
+
+# --- marks of thousands, and headings that are not known
+
+
+def test_thousands_are_not_separated(tmp_path):
+    kilo = np.column_stack([ROWS[:, 0] * 1e3, ROWS[:, 1:] * 1e3]).round()
+    grouped = [[f"{value:,.0f}" for value in row] for row in kilo.tolist()]
+    head = ("x [um]", "p [kPa]", "q [kPa]")
+    dots = [[f"{x:.6f}".replace(".", ","), *(each.replace(",", ".") for each in row[1:])]
+            for x, row in zip(ROWS[:, 0].tolist(), grouped, strict=True)]  # fmt: skip
+    for rows, separator in ((grouped, "\t"), ([[f'"{each}"' for each in row] for row in grouped], ","), (dots, ";")):
+        given = "\n".join(map(separator.join, [head, *rows]))
+        (path,) = files(tmp_path, t__txt=given)
+        assert "thousands separators?" in line_of(score, SCENE, path)
+    body = "\n".join("\t".join(f"{value:.3f}" for value in row) for row in ROWS.tolist())
+    read = read_tractions(files(tmp_path, t__txt="\t".join(("x", "p", "q")) + f"\n{body}")[0], SCENE)
+    assert read.p == pytest.approx(P, abs=1e3)  # three digits behind the decimal mark
+
+
+HEADINGS = (
+    "# x q p\n# -------",
+    "# columns: x q p",
+    'VARIABLES = "X" "CSHEAR1" "CPRESS"\nZONE',
+    "x,q,p",
+    "X shear p\nbegin data",
+)
+
+
+@pytest.mark.parametrize("heading", HEADINGS)
+def test_a_heading_that_is_not_known_is_refused(tmp_path, heading):
+    (path,) = files(tmp_path, t__txt=text(ROWS[:, [0, 2, 1]], heading, ";"))
+    assert "line 1 seems to be a heading: must name each column, or give --columns" in line_of(score, SCENE, path)
+    check(path, columns={"x": "1", "q2": "2", "p": "3"})
+
+
+def test_a_comment_with_commas_is_a_heading(tmp_path):
+    check(files(tmp_path, t__txt=text(ROWS[:, [0, 2, 1]], "# x,q,p", "\t")))

@@ -27,6 +27,8 @@ _NO_VALUE = {
     *(f"1.#{word}{'0' * count}" for word in ("ind", "qnan", "snan", "inf") for count in range(7)),
 }  # fmt: skip
 _BEGIN = set("+-.0123456789")  # letters with which a number begins
+_MARKED = re.compile(r"[+-]?(?:\d{1,3}(?:[.,]\d{3})+(?:[.,]\d+)?|\d*[.,]\d*)(?:[eEdD][+-]?\d+)?")
+_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:[.,]\d{3})+")  # 417,615
 _RULE = re.compile(r"[\s\-=_*+|]*")
 _SUMMARY = re.compile(
     r"(?:min(?:imum)?|max(?:imum)?|total|summ?e?|mean|avg|average|mittelwert|std\w*|rms|range|r[az]|"
@@ -149,8 +151,9 @@ def read_table(text: str, origin: str, loose: bool = False) -> TextTable:
     are no heading, as they are no names of all columns, are read by who asks.
 
     Separators are commas, semicolons, tabs or blanks; commas that do not separate are decimal commas. ``#`` begins a
-    comment, behind a row with blanks around it; a heading may be one. A line of units under the heading joins it. Blocks of a report, each with its heading
-    and lines of its least and largest values, are one table, with columns that tell them apart.
+    comment, behind a row with blanks around it; a heading may be one. A line of units under the heading joins it.
+    Blocks of a report, each with its heading and lines of its least and largest values, are one table, with columns
+    that tell them apart.
 
     Raises
     ------
@@ -170,7 +173,7 @@ def read_table(text: str, origin: str, loose: bool = False) -> TextTable:
     rows, numbers, blocks, left = _rows(bare, form, first, (head, ruled), origin)
     if len(rows) > MOST_ROWS:
         raise InputError(f"{origin}: {len(rows)} rows: must be at most {MOST_ROWS}")
-    columns = _columns(rows, form)
+    columns = _columns(rows, form, numbers, origin)
     apart = _told_apart(blocks, len(rows))
     for name, values in apart.items():
         names, columns = [*names, name], [*columns, values]
@@ -300,9 +303,10 @@ def _commented(lines: list[str], form: _Form, first: int) -> tuple[list[str], in
     for place in range(first - 1, -1, -1):
         words = lines[place].strip().lstrip("#%!/").strip()
         if words:
-            names = _names(words, form)
-            if len(names) == form.width and not any(map(is_value, names)):
-                return names, place + 1, []
+            for separator in (form.separator, ","):
+                names = _names(words, form._replace(separator=separator))
+                if len(names) == form.width and not any(map(is_value, names)):
+                    return names, place + 1, []
             break
     return _numbered(form)
 
@@ -424,14 +428,36 @@ def _told_apart(blocks: _Blocks, count: int) -> dict[str, list[str]]:
     return {key: [one for one, n in zip(of, each, strict=True) for _ in range(n)] for key, of in values.items()}
 
 
-def _columns(rows: list[str], form: _Form) -> list[list[str]]:
+def _grouped(fields: list[str], width: int) -> int | None:
+    """Index of one of the ``fields``, by rows of ``width``, with a mark of thousands: marks are of two kinds, or all of
+    them are before three digits and numbers without stand in the same column. None if there is none."""
+    places = {mark: _marked(fields, mark) for mark in ",."}
+    found = {mark: first for mark, of in places.items() if (first := next(of, None)) is not None}
+    if len(found) == len(places):
+        return max(found.values(), key=lambda k: bool(_GROUPED.match(fields[k])))
+    for mark, first in found.items():
+        if _GROUPED.fullmatch(fields[first]) and all(_GROUPED.fullmatch(fields[k]) for k in places[mark]):
+            column = fields[first % width :: width]
+            return first if any(field.lstrip("+-").isdecimal() for field in column) else None
+    return None
+
+
+def _marked(fields: list[str], mark: str) -> Iterator[int]:
+    """Indices of the ``fields`` that are numbers with this ``mark``."""
+    return (k for k, field in enumerate(fields) if mark in field and _MARKED.fullmatch(field))
+
+
+def _columns(rows: list[str], form: _Form, numbers: list[int], origin: str) -> list[list[str]]:
     """Fields of ``rows`` by column, with decimal points, and empty where there is no value."""
     joined = (form.separator or " ").join(rows)
     if '"' in joined:
-        every: Iterator[str] | list[str] = [field for row in rows for field in form.fields(row)]
+        every = [field for row in rows for field in form.fields(row)]
     else:
         every = joined.split(form.separator or None)  # a list a row would take far longer
-    if form.separator != "," or '"' in joined:
-        every = (field.replace(",", ".") for field in every)
     fields = [field.strip().strip("'") for field in every]
+    if (wrong := _grouped(fields, form.width)) is not None:
+        told = f"line {numbers[wrong // form.width]}: {fields[wrong][:40]}"
+        raise InputError(f"{origin}: {told}: thousands separators? must have one decimal mark, and no other")
+    if "," in joined:
+        fields = [field.replace(",", ".") for field in fields]
     return [["" if _is_none(field) else field for field in fields[k :: form.width]] for k in range(form.width)]

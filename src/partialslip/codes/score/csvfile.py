@@ -7,7 +7,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.codes.score.headers import COLUMN_DIMENSIONS, NODES, Asked, known, numbered, pairs, selected, shown
+from partialslip.codes.score.headers import (
+    COLUMN_DIMENSIONS,
+    NODES,
+    Asked,
+    check_no_heading,
+    known,
+    numbered,
+    pairs,
+    selected,
+    shown,
+)
 from partialslip.codes.score.rows import Label, check_equal_x, check_passes
 from partialslip.codes.score.samples import PLAUSIBLE, unusable
 from partialslip.scene import Scene
@@ -80,6 +90,7 @@ def columns_of(table: TextTable, asked: Asked, chosen: Mapping[str, str] | None 
     if chosen:
         wanted = selected(names, chosen, asked)
     elif not table.head:
+        check_no_heading(table.before, asked.origin)
         wanted = numbered(names, asked)
         told = ", ".join(f"{name}={k + 1}" for k, name in enumerate(wanted))
         notes.append(f"no heading: read as --columns {told}")
