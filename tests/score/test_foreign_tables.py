@@ -114,7 +114,7 @@ def test_centre_auto_puts_x_in_the_middle(tmp_path, capsys):
         ("x,p,dq\n1,2,3", {"x": "9", "p": "p", "dq": "dq"}, "--columns 9: "),
         ("x,p,dq\n1,2,3", {"y": "x"}, "--columns y: must be one of x, p, Fn, dq"),
         ("x,p,s [Pa],t [MPa]\n1,2,3,4", {"x": "x", "p": "p", "dq": "t-s"}, "must be in the same unit"),
-        ("x;p;dq\n1,5;2;1.000,5", None, "line 2: dq = '1.000.5': must be a number"),
+        ("x;p;dq\n1,5;2;1.000,5", None, "line 2: 1.000,5: thousands separators"),
     ],
 )
 def test_what_cannot_be_read_is_one_line(read, table, columns, said):

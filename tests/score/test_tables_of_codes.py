@@ -279,3 +279,140 @@ def test_tables_are_read_once_decoded(tmp_path):
     path.write_bytes(text(ROWS, "x,p,q").encode("utf-16-le"))
     check(path)
     assert read_tractions(path, SCENE).p == pytest.approx(P, rel=1e-8)
+
+
+# --- what is no row, and what is none of a column
+
+
+SUMS = ("Max,0.289,418.104,118.9", "AVERAGE,0.01,93.2,20", '"Mittelwert",0.01,93.2,20', "Rz,1,2,3")
+
+
+@pytest.mark.parametrize("place", [1, 50, None])
+def test_rows_of_sums_are_no_points(tmp_path, place):
+    rows = text(np.column_stack([NODES, ROWS]), "Node,x,CPRESS,CSHEAR1").split("\n")
+    at = len(rows) if place is None else place
+    given = "\n".join([*rows[:at], *SUMS, *rows[at:]])
+    check(files(tmp_path, t__csv=given), "left out: 4 lines of sums or extremes")
+    semicolons = given.replace(",", ";").replace(".", ",")
+    check(files(tmp_path, t__csv=semicolons), "left out: 4 lines of sums or extremes")
+    for wrong, told in ((",0.05,26214,5200", "''"), ("Median,0.05,26214,5200", "'Median'")):
+        (path,) = files(tmp_path, t__csv="\n".join([*rows[:at], wrong, *rows[at:]]))
+        assert f"line {at + 1}: {told}: must be a number" in line_of(score, SCENE, path)
+
+
+@pytest.mark.parametrize("label", ["Node {}", "mean of faces", "Sum", "N{}"])
+def test_rows_may_begin_with_words(tmp_path, label):
+    rows = "".join(f"{label.format(k)},{line}\n" for k, line in enumerate(text(ROWS).split()))
+    check(files(tmp_path, t__csv=f"label,x,CPRESS,CSHEAR1\n{rows}"))
+
+
+def test_a_sum_among_rows_that_begin_with_words_is_refused(tmp_path):
+    rows = "".join(f"pad,{line}\n" for line in text(ROWS).split())
+    (path,) = files(tmp_path, t__csv=f"part,x,CPRESS,CSHEAR1\n{rows}Sum,0.05,26214,5200\n")
+    assert "line 143: 'Sum': must not be a sum" in line_of(score, SCENE, path)
+
+
+@pytest.mark.parametrize("none", ["1.#IND", "-1.#QNAN", "1.#INF00", "#N/A", "#DIV/0!"])
+@pytest.mark.parametrize("column", [0, 1, 2])
+def test_no_value_is_no_comment(tmp_path, none, column):
+    rows = text(ROWS, "x,CPRESS,CSHEAR1").split("\n")
+    fields = rows[70].split(",")
+    rows[69] += " # bad"
+    rows.insert(70, ",".join([*fields[:column], none, *fields[column + 1 :]]))
+    check(files(tmp_path, t__csv="\n".join(rows)), "left out: 1 row without values")
+
+
+def test_a_name_may_have_a_hash(tmp_path):
+    rows = text(np.column_stack([NODES, ROWS]), "Node #,x,CPRESS,CSHEAR1")
+    check(files(tmp_path, t__csv=rows))
+    check(files(tmp_path, t__txt=rows.replace(",", "\t")))
+
+
+def test_a_column_is_numbered_in_decimals(tmp_path):
+    (path,) = files(tmp_path, t__csv=text(ROWS, "x,CPRESS,CSHEAR1"))
+    assert "--columns ²: " in line_of(score, SCENE, path, columns={"x": "²", "p": "2", "q2": "3"})
+
+
+# --- rows of several surfaces or load points
+
+
+def test_files_of_several_parts_steps_or_pairs_are_not_joined(tmp_path):
+    p, q = ("COORD.COOR1", "CPRESS"), ("COORD.COOR1", "CSHEAR1")
+    for part, step, told in (("PAD-1", "SHEAR", "p.rpt is of part FLAT-1, "), ("FLAT-1", "BACK", "of step SHEAR, ")):
+        pair = files(tmp_path, p__rpt=report([("FLAT-1", "SHEAR", ROWS[:, :2])], p),
+                     q__rpt=report([(part, step, ROWS[:, [0, 2]])], q))  # fmt: skip
+        assert told in line_of(score, SCENE, pair)
+    check(files(tmp_path, p__rpt=report([("FLAT-1", "SHEAR", ROWS[:, :2])], p),
+                q__rpt=report([("FLAT-1", "SHEAR", ROWS[:, [0, 2]])], q)))  # fmt: skip
+    pair = files(tmp_path, p__csv=text(ROWS[:, :2], "x,CPRESS   A1/B1"), q__csv=text(ROWS[:, ::2], "x,CSHEAR1   C1/D1"))
+    assert "is of pair A1/B1, " in line_of(score, SCENE, pair)
+    for part in ("FLAT-1", "PAD-1"):
+        pair = files(tmp_path, a__rpt=report([("FLAT-1", "BACK", FIRST)]), b__rpt=report([(part, "SHEAR", ROWS)]))
+        if part == "FLAT-1":
+            check(pair)
+        else:
+            assert "b.rpt is of part PAD-1, " in line_of(score, SCENE, pair)
+
+
+OTHER = ROWS * [1, 1, -1] + [1.3e-3, 0, 0]
+
+
+@pytest.mark.parametrize("name", ["Part Instance Name", "Time [s]", "substep", "t", "vtkCompositeIndex"])
+def test_a_column_of_any_name_tells_passes_apart(tmp_path, name):
+    rows = np.column_stack([np.repeat([1.0, 2.0], len(ROWS)), np.vstack([OTHER, ROWS])])
+    (path,) = files(tmp_path, t__csv=text(rows, f"{name},x,CPRESS,CSHEAR1"))
+    assert f'{name} is 1, 2: keep one, as by --where "{name}=' in line_of(score, SCENE, path)
+    check(path, where={name: "2"})
+
+
+@pytest.mark.parametrize("way", ["again", "back", "in turn"])
+def test_passes_without_a_column_are_refused(tmp_path, way):
+    both = np.vstack([ROWS, OTHER[::-1] if way == "back" else OTHER])
+    rows = both[np.argsort(both[:, 0], kind="stable")] if way == "in turn" else both
+    (path,) = files(tmp_path, t__csv=text(rows, "x,CPRESS,CSHEAR1"))
+    assert "rows are of 2 passes over the contact, which differ by" in line_of(score, SCENE, path)
+
+
+def test_corners_and_then_middles_are_one_pass(tmp_path):
+    """As meshes of quadratic elements number their nodes; and pairs left and right."""
+    check(files(tmp_path, t__csv=text(np.vstack([ROWS[::2], ROWS[1::2]]), "x,CPRESS,CSHEAR1")))
+    pairs = np.column_stack([np.abs(X), ROWS])[np.argsort(np.abs(X), kind="stable")]
+    check(files(tmp_path, t__csv=text(pairs, "radius,x,CPRESS,CSHEAR1")))
+
+
+# --- marks of thousands, and headings that are not known
+
+
+def test_thousands_are_not_separated(tmp_path):
+    kilo = np.column_stack([ROWS[:, 0] * 1e3, ROWS[:, 1:] * 1e3]).round()
+    grouped = [[f"{value:,.0f}" for value in row] for row in kilo.tolist()]
+    head = ("x [um]", "p [kPa]", "q [kPa]")
+    dots = [[f"{x:.6f}".replace(".", ","), *(each.replace(",", ".") for each in row[1:])]
+            for x, row in zip(ROWS[:, 0].tolist(), grouped, strict=True)]  # fmt: skip
+    for rows, separator in ((grouped, "\t"), ([[f'"{each}"' for each in row] for row in grouped], ","), (dots, ";")):
+        given = "\n".join(map(separator.join, [head, *rows]))
+        (path,) = files(tmp_path, t__txt=given)
+        assert "thousands separators?" in line_of(score, SCENE, path)
+    body = "\n".join("\t".join(f"{value:.3f}" for value in row) for row in ROWS.tolist())
+    read = read_tractions(files(tmp_path, t__txt="\t".join(("x", "p", "q")) + f"\n{body}")[0], SCENE)
+    assert read.p == pytest.approx(P, abs=1e3)  # three digits behind the decimal mark
+
+
+HEADINGS = (
+    "# x q p\n# -------",
+    "# columns: x q p",
+    'VARIABLES = "X" "CSHEAR1" "CPRESS"\nZONE',
+    "x,q,p",
+    "X shear p\nbegin data",
+)
+
+
+@pytest.mark.parametrize("heading", HEADINGS)
+def test_a_heading_that_is_not_known_is_refused(tmp_path, heading):
+    (path,) = files(tmp_path, t__txt=text(ROWS[:, [0, 2, 1]], heading, ";"))
+    assert "line 1 seems to be a heading: must name each column, or give --columns" in line_of(score, SCENE, path)
+    check(path, columns={"x": "1", "q2": "2", "p": "3"})
+
+
+def test_a_comment_with_commas_is_a_heading(tmp_path):
+    check(files(tmp_path, t__txt=text(ROWS[:, [0, 2, 1]], "# x,q,p", "\t")))

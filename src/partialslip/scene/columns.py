@@ -42,6 +42,6 @@ def place_of(name: str, names: list[str]) -> int | None:
     more than one."""
     places = [k for k, each in enumerate(names) if name in (each, split_unit(each)[0])]
     places = places or [k for k, each in enumerate(names) if name.lower() == each.lower()]
-    if not places and name.isdigit() and 1 <= int(name) <= len(names):
+    if not places and name.isdecimal() and 1 <= int(name) <= len(names):
         places = [int(name) - 1]
     return places[0] if len(places) == 1 else None

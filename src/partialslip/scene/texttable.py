@@ -20,12 +20,23 @@ _LOOKED_AT = 2000  # cost: lines from which the separator and the number of colu
 _TWO = 2  # fixed: fewest columns of a table, most lines of a heading above a rule, numbers without which no row begins
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?|[+-]?inf(?:inity)?", re.IGNORECASE)
 _COMMA = re.compile(r"[+-]?\d*,\d+(?:[eEdD][+-]?\d+)?|[+-]?\d+(?:[eEdD][+-]?\d+)?")  # with a decimal comma
-_NO_VALUE = {"", "-", "--", "novalue", "no value", "n/a", "na", "nan", "null", "none", "bad"}
+_ERRORS = ("#n/a", "#div/0!", "#value!", "#ref!", "#num!")  # of spreadsheets
+#: Without signs, in lower case.
+_NO_VALUE = {
+    "", "novalue", "no value", "n/a", "na", "nan", "null", "none", "bad", *_ERRORS,
+    *(f"1.#{word}{'0' * count}" for word in ("ind", "qnan", "snan", "inf") for count in range(7)),
+}  # fmt: skip
+_BEGIN = set("+-.0123456789")  # letters with which a number begins
+_MARKED = re.compile(r"[+-]?(?:\d{1,3}(?:[.,]\d{3})+(?:[.,]\d+)?|\d*[.,]\d*)(?:[eEdD][+-]?\d+)?")
+_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:[.,]\d{3})+")  # 417,615
 _RULE = re.compile(r"[\s\-=_*+|]*")
 _SUMMARY = re.compile(
-    r"(?:minimum|maximum|total|sum|mean|at\s+(?:node|element))\b.*|(?:node|element|value)s?\s+[-+.\d].*", re.IGNORECASE
+    r"(?:min(?:imum)?|max(?:imum)?|total|summ?e?|mean|avg|average|mittelwert|std\w*|rms|range|r[az]|"
+    r"at\s+(?:node|element))\b.*|(?:node|element|value)s?\s+[-+.\d].*",
+    re.IGNORECASE,
 )
 _COMMENTS = ("#", "%", "!", "//")
+_BEHIND = re.compile(r"(?<=[\s,;])#(?= |$).*")  # a comment behind a row: no 1.#IND, and no name like Node #
 #: Lines between the blocks of a report that tell what a block is of.
 _LABELS = {
     "part": re.compile(r"reported at .* for (?:part|region|instance|set)s?:\s*(.+)", re.IGNORECASE),
@@ -53,6 +64,8 @@ class TextTable(NamedTuple):
         Lines from the first to the last of the heading, as they stand.
     notes : tuple of str
         What was left out.
+    labels : dict of str to str
+        What a report says that all rows are of: part, step, frame.
     """
 
     names: list[str]
@@ -61,6 +74,7 @@ class TextTable(NamedTuple):
     head: int = 0
     before: list[str] = []  # noqa: RUF012
     notes: tuple[str, ...] = ()
+    labels: dict[str, str] = {}  # noqa: RUF012
 
     def only(self, kept: list[int]) -> "TextTable":
         """The table with the ``kept`` rows alone."""
@@ -137,8 +151,9 @@ def read_table(text: str, origin: str, loose: bool = False) -> TextTable:
     are no heading, as they are no names of all columns, are read by who asks.
 
     Separators are commas, semicolons, tabs or blanks; commas that do not separate are decimal commas. ``#`` begins a
-    comment; a heading may be one. A line of units under the heading joins it. Blocks of a report, each with its heading
-    and lines of its least and largest values, are one table, with columns that tell them apart.
+    comment, behind a row with blanks around it; a heading may be one. A line of units under the heading joins it.
+    Blocks of a report, each with its heading and lines of its least and largest values, are one table, with columns
+    that tell them apart.
 
     Raises
     ------
@@ -158,14 +173,16 @@ def read_table(text: str, origin: str, loose: bool = False) -> TextTable:
     rows, numbers, blocks, left = _rows(bare, form, first, (head, ruled), origin)
     if len(rows) > MOST_ROWS:
         raise InputError(f"{origin}: {len(rows)} rows: must be at most {MOST_ROWS}")
-    columns = _columns(rows, form)
-    for name, values in _told_apart(blocks, len(rows)).items():
+    columns = _columns(rows, form, numbers, origin)
+    apart = _told_apart(blocks, len(rows))
+    for name, values in apart.items():
         names, columns = [*names, name], [*columns, values]
+    labels = {name: value for name, value in blocks[0][1].items() if name not in apart}
     if above := sum(bool(line.strip()) for line in bare[: head - 1 if head else first]):
         left["line above the heading", "lines above the heading"] = above
     told = [f"{count} {words[count > 1]}" for words, count in left.items()]
     notes = (f"left out: {', '.join(told)}",) if told else ()
-    return TextTable(names, columns, numbers, head, lines[: first or 1] if first else [], notes)
+    return TextTable(names, columns, numbers, head, lines[: first or 1] if first else [], notes, labels)
 
 
 def is_value(field: str) -> bool:
@@ -174,7 +191,10 @@ def is_value(field: str) -> bool:
 
 
 def _without_comment(line: str) -> str:
-    return "" if line.lstrip().startswith(_COMMENTS) else line.partition("#")[0]
+    start = line.lstrip()
+    if start.startswith(_COMMENTS) and not start[:7].lower().startswith(_ERRORS):
+        return ""
+    return _BEHIND.sub("", line) if "#" in line else line
 
 
 def _form(bare: list[str], origin: str) -> tuple[_Form, int]:
@@ -210,7 +230,7 @@ def _is_row(fields: list[str]) -> bool:
     """Whether at least two of the ``fields`` and half of them are numbers or stand for no value, and not all of them
     for none."""
     values = sum(is_value(field.replace(",", ".")) for field in fields)
-    none = sum(field.lower() in _NO_VALUE for field in fields)
+    none = sum(map(_is_none, fields))
     return values + none >= max(_TWO, len(fields) / 2) and (values > 0 or any(map(str.strip, fields)))
 
 
@@ -283,9 +303,10 @@ def _commented(lines: list[str], form: _Form, first: int) -> tuple[list[str], in
     for place in range(first - 1, -1, -1):
         words = lines[place].strip().lstrip("#%!/").strip()
         if words:
-            names = _names(words, form)
-            if len(names) == form.width and not any(map(is_value, names)):
-                return names, place + 1, []
+            for separator in (form.separator, ","):
+                names = _names(words, form._replace(separator=separator))
+                if len(names) == form.width and not any(map(is_value, names)):
+                    return names, place + 1, []
             break
     return _numbered(form)
 
@@ -324,28 +345,34 @@ def _rows(
     left: Counter[tuple[str, str]] = Counter()
     prose: list[str] = []
     counted, separator = form.width - 1, form.separator
-    begins_with_number = is_value(form.fields(bare[first])[0])
+    with_number, with_word = _beginnings(bare[first:_LOOKED_AT], form)
     for number, line in enumerate(bare[first:], start=first + 1):
-        start = line.lstrip()[:1]
-        if not start:
+        if not line.strip(f" \t\f\v{separator}"):
             continue
+        start = (line.lstrip(" ") if separator else line.lstrip())[0]
         count = line.count(separator) if separator else len(line.split()) - 1
-        if count == counted and not start.isalpha() and '"' not in line and not prose:
+        plain = start in _BEGIN if with_number else not start.isalpha()
+        if count == counted and plain and '"' not in line and not prose:
             rows.append(line)
             numbers.append(number)
             continue
         squeezed, fields = " ".join(line.split()), form.fields(line)
+        is_row = len(fields) == form.width and _is_row(fields)
         if _RULE.fullmatch(line) and any(mark in line for mark in "-=_*") and len(set(squeezed)) <= _TWO:
             if prose and prose[-len(ruled) :] == ruled:
                 blocks.append((len(rows), blocks[-1][1] | _labels(prose)))
                 prose = []
-        elif _SUMMARY.fullmatch(squeezed):
-            left["line of a sum or an extreme", "lines of sums or extremes"] += 1
         elif again and squeezed == again:
             blocks.append((len(rows), labels))
             left["repeated heading", "repeated headings"] += 1
-        elif len(fields) == form.width and not prose and _is_row(fields):
-            if ruled and begins_with_number and not is_value(fields[0]):
+        elif _SUMMARY.fullmatch(squeezed.lstrip("\"'")) and not (is_row and with_word):
+            if is_row and not with_number:
+                raise InputError(
+                    f"{origin}: line {number}: {fields[0][:40]!r}: must not be a sum, or have another name"
+                )
+            left["line of a sum or an extreme", "lines of sums or extremes"] += 1
+        elif is_row and not prose:
+            if with_number and not _begins(fields):
                 raise InputError(f"{origin}: line {number}: {fields[0][:40]!r}: must be a number, as in other rows")
             rows.append(line)
             numbers.append(number)
@@ -356,7 +383,27 @@ def _rows(
         else:
             like = "the header line" if head else f"line {first + 1}"
             raise InputError(f"{origin}: line {number}: must have {form.width} fields, like {like}")
+    if not rows:
+        raise InputError(f"{origin}: line {first + 1}: must be followed by rows of numbers")
     return rows, numbers, [block for block in blocks if block[0] < len(rows)], left
+
+
+def _beginnings(lines: list[str], form: _Form) -> tuple[bool, bool]:
+    """Whether most rows among ``lines`` begin with a number, and whether most begin with a word as of a sum."""
+    rows = [(line, fields) for line in lines if len(fields := form.fields(line)) == form.width and _is_row(fields)]
+    numbers = sum(_begins(fields) for _, fields in rows)
+    words = sum(_SUMMARY.fullmatch(" ".join(line.split()).lstrip("\"'")) is not None for line, _ in rows)
+    return 2 * numbers > len(rows), 2 * words > len(rows)
+
+
+def _begins(fields: list[str]) -> bool:
+    """Whether the first of the ``fields`` of a row is a number, or says that there is none."""
+    return is_value(fields[0].replace(",", ".")) or (fields[0] != "" and _is_none(fields[0]))
+
+
+def _is_none(field: str) -> bool:
+    """Whether a ``field`` stands for no value, with or without a sign."""
+    return field.lower().lstrip("+-") in _NO_VALUE
 
 
 def _labels(lines: list[str]) -> dict[str, str]:
@@ -381,16 +428,36 @@ def _told_apart(blocks: _Blocks, count: int) -> dict[str, list[str]]:
     return {key: [one for one, n in zip(of, each, strict=True) for _ in range(n)] for key, of in values.items()}
 
 
-def _columns(rows: list[str], form: _Form) -> list[list[str]]:
+def _grouped(fields: list[str], width: int) -> int | None:
+    """Index of one of the ``fields``, by rows of ``width``, with a mark of thousands: marks are of two kinds, or all of
+    them are before three digits and numbers without stand in the same column. None if there is none."""
+    places = {mark: _marked(fields, mark) for mark in ",."}
+    found = {mark: first for mark, of in places.items() if (first := next(of, None)) is not None}
+    if len(found) == len(places):
+        return max(found.values(), key=lambda k: bool(_GROUPED.match(fields[k])))
+    for mark, first in found.items():
+        if _GROUPED.fullmatch(fields[first]) and all(_GROUPED.fullmatch(fields[k]) for k in places[mark]):
+            column = fields[first % width :: width]
+            return first if any(field.lstrip("+-").isdecimal() for field in column) else None
+    return None
+
+
+def _marked(fields: list[str], mark: str) -> Iterator[int]:
+    """Indices of the ``fields`` that are numbers with this ``mark``."""
+    return (k for k, field in enumerate(fields) if mark in field and _MARKED.fullmatch(field))
+
+
+def _columns(rows: list[str], form: _Form, numbers: list[int], origin: str) -> list[list[str]]:
     """Fields of ``rows`` by column, with decimal points, and empty where there is no value."""
     joined = (form.separator or " ").join(rows)
     if '"' in joined:
-        every: Iterator[str] | list[str] = [field for row in rows for field in form.fields(row)]
+        every = [field for row in rows for field in form.fields(row)]
     else:
         every = joined.split(form.separator or None)  # a list a row would take far longer
-    if form.separator != "," or '"' in joined:
-        every = (field.replace(",", ".") for field in every)
     fields = [field.strip().strip("'") for field in every]
-    return [
-        ["" if field.lower() in _NO_VALUE else field for field in fields[k :: form.width]] for k in range(form.width)
-    ]
+    if (wrong := _grouped(fields, form.width)) is not None:
+        told = f"line {numbers[wrong // form.width]}: {fields[wrong][:40]}"
+        raise InputError(f"{origin}: {told}: thousands separators? must have one decimal mark, and no other")
+    if "," in joined:
+        fields = [field.replace(",", ".") for field in fields]
+    return [["" if _is_none(field) else field for field in fields[k :: form.width]] for k in range(form.width)]

@@ -7,8 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from partialslip.codes.score.headers import COLUMN_DIMENSIONS, NODES, Asked, known, numbered, selected, shown
-from partialslip.codes.score.rows import Label, check_equal_x
+from partialslip.codes.score.headers import (
+    COLUMN_DIMENSIONS,
+    NODES,
+    Asked,
+    check_no_heading,
+    known,
+    numbered,
+    pairs,
+    selected,
+    shown,
+)
+from partialslip.codes.score.rows import Label, check_equal_x, check_passes
 from partialslip.codes.score.samples import PLAUSIBLE, unusable
 from partialslip.scene import Scene
 from partialslip.scene.columns import place_of, split_unit
@@ -47,6 +57,8 @@ class Columns(NamedTuple):
         Whether the shear is known at one load point only.
     nodes : list or None
         Numbers of the nodes, by row, if the file has them.
+    of : dict of str to str
+        What the file says that all of them are of: part, step, frame, and pair of surfaces.
     """
 
     values: dict[str, Array]
@@ -54,6 +66,7 @@ class Columns(NamedTuple):
     notes: tuple[str, ...] = ()
     moment: bool = False
     nodes: list[str] | None = None
+    of: dict[str, str] = {}  # noqa: RUF012
 
 
 def columns_of(table: TextTable, asked: Asked, chosen: Mapping[str, str] | None = None, units: Units = SI) -> Columns:
@@ -77,6 +90,7 @@ def columns_of(table: TextTable, asked: Asked, chosen: Mapping[str, str] | None 
     if chosen:
         wanted = selected(names, chosen, asked)
     elif not table.head:
+        check_no_heading(table.before, asked.origin)
         wanted = numbered(names, asked)
         told = ", ".join(f"{name}={k + 1}" for k, name in enumerate(wanted))
         notes.append(f"no heading: read as --columns {told}")
@@ -113,9 +127,9 @@ def columns_of(table: TextTable, asked: Asked, chosen: Mapping[str, str] | None 
     labels = None if node is None else [str(value) for value, one in zip(table.columns[node], kept, strict=True) if one]
     expressions = [f"{name} = {each.text}" for name, each in wanted.items() if each.text != name]
     moment = any(each.moment for each in wanted.values())
-    return Columns(
-        {name: column[kept] for name, column in values.items()}, ", ".join(expressions), tuple(notes), moment, labels
-    )
+    values = {name: column[kept] for name, column in values.items()}
+    of = table.labels | dict(zip(("pair",), pairs(wanted), strict=False))
+    return Columns(values, ", ".join(expressions), tuple(notes), moment, labels, of)
 
 
 def _is_over(text: str, scale: str) -> bool:
@@ -153,7 +167,7 @@ def where(table: TextTable, asked: Mapping[str, str], origin: str) -> list[TextT
                 f"--where {name}={value}: must be one value, as another column has one for each load point"
             )
         tables = [each.only([row for row, own in enumerate(each.columns[place]) if _same(one, str(own))])
-                  for one in values for each in tables]  # fmt: skip
+                  ._replace(labels=each.labels | {name.lower(): one}) for one in values for each in tables]  # fmt: skip
     if asked and any(not each.lines for each in tables):
         raise InputError(f"--where {', '.join(f'{n}={v}' for n, v in asked.items())}: {origin} has no such row")
     return tables
@@ -226,9 +240,12 @@ def _of_one(
                 apart = f"points with p lie apart across x: must be on one line; {name} is {_listed(kinds)}"
                 raise InputError(f"{origin}: {apart}: {keep}")
     kept = table.only(np.flatnonzero(every).tolist())
-    labels = (Label(name, k + 1, list(kept.columns[k])) for k, name in enumerate(table.names) if k not in used)
+    labels = [Label(name, k + 1, list(kept.columns[k])) for k, name in enumerate(table.names) if k not in used]
     advice = f"keep one, as by {_type('{name}', '{kept}')}"
-    check_equal_x({name: each[every] for name, each in values.items()}, labels, origin, advice)
+    values = {name: each[every] for name, each in values.items()}
+    check_equal_x(values, labels, origin, advice)
+    if "p" in values:  # forces of corners and middles of sides differ
+        check_passes(values, labels, origin, advice)
     return every, notes
 
 

@@ -1,7 +1,7 @@
 """Columns of tables: quantity and unit of each, by the names of this package and of other codes."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from partialslip.scene.columns import place_of, split_unit
@@ -121,8 +121,7 @@ def known(names: list[str], asked: Asked) -> dict[str, Wanted]:
                 f"{asked.origin}: column {name!r}: must be there once, not {len(places)} times ({told}); use --columns"
             )
     wanted = {name: each[0] for name, each in found.items() if each}
-    pairs = {name: _PAIR.match(split_unit(each.text)[0]) for name, each in wanted.items()}
-    of = {match[2] for match in pairs.values() if match}
+    of = pairs(wanted)
     if len(of) > 1:
         raise InputError(f"{asked.origin}: columns of the pairs {', '.join(sorted(of))}: must be of one; use --columns")
     return _complete(wanted, names, asked)
@@ -167,6 +166,21 @@ def selected(names: list[str], chosen: Mapping[str, str], asked: Asked) -> dict[
             if not asked.part:
                 raise
     return _complete(wanted, names, asked)
+
+
+def check_no_heading(before: Sequence[str], origin: str) -> None:
+    """Raise InputError if a line ``before`` the first row of a table without heading has a name of p or of the
+    shear."""
+    names = {*NAMES["p"], *NAMES["q"], *map(str.lower, _OWN)} - {"x"}
+    for number, line in enumerate(before, start=1):
+        if names & set(re.findall(r"[^\W\d]\w*", line.lower())):
+            told = "must name each column, or give --columns x=...,p=...,q2=..."
+            raise InputError(f"{origin}: line {number} seems to be a heading: {told}")
+
+
+def pairs(wanted: Mapping[str, Wanted]) -> set[str]:
+    """Pairs of surfaces that the names of the ``wanted`` columns state."""
+    return {match[2] for each in wanted.values() if (match := _PAIR.match(split_unit(each.text)[0]))}
 
 
 def shown(names: list[str]) -> str:

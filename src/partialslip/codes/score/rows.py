@@ -12,6 +12,8 @@ from partialslip.tools.errors import InputError
 _EQUAL = 1e-7  # accuracy: of the points' extent: largest distance of rows at equal x
 _NOTHING = 1e-9  # accuracy: of the norm: differences due to rounding
 _FEW = 12  # display: most values of a column that tells rows apart
+_PASS = 12  # limit: fewest rows of a pass over the contact
+_IN_TURN = 0.5  # limit: of the norm: difference of every other row from those beside it
 
 
 class Label(NamedTuple):
@@ -79,3 +81,54 @@ def check_equal_x(values: Mapping[str, Array], labels: Iterable[Label], origin: 
             kept = advice.format(name=label.name, number=label.number, kept=likely)
             raise InputError(f"{told}; {label.name} is {', '.join(kinds)}: {kept}")
     raise InputError(f"{told}: keep those of one surface and load point")
+
+
+def check_passes(values: Mapping[str, Array], labels: Iterable[Label], origin: str, advice: str) -> None:
+    """Refuse rows, in the order of the file, of several passes over the contact that tell different tractions, at
+    whatever x: one after another, or rows of two in turn. Parameters are those of :func:`check_equal_x`.
+
+    Raises
+    ------
+    InputError
+        If they differ, in a norm, by more than the largest bar; or by half of it where rows are in turn.
+    """
+    x, *columns = values.values()
+    pressed = x[np.any(np.stack(columns) != 0, axis=0)]
+    if len(pressed) < 2 * _PASS:
+        return
+    inside = np.flatnonzero((x >= pressed.min()) & (x <= pressed.max()))
+    way = np.sign(np.diff(x[inside]))
+    runs = np.split(inside, np.flatnonzero(np.diff(way)) + 1)
+    runs = [run for run in runs if len(run) >= _PASS and np.ptp(x[run]) > np.ptp(pressed) / 2]
+    order = inside[np.argsort(x[inside], kind="stable")]
+    for passes, limit in ((runs, LARGEST), ([order[::2], order[1::2]], _IN_TURN)):
+        for one in passes[1:]:
+            off = {name: _off(x, column, passes[0], one) for name, column in zip([*values][1:], columns, strict=True)}
+            name = max(off, key=lambda each: off[each])
+            if off[name] > limit:
+                told = f"rows are of {len(passes)} passes over the contact, which differ by {off[name]:.0%} in {name}"
+                keep = _kept(labels, passes, columns[[*off].index(name)], advice)
+                raise InputError(
+                    f"{origin}: {told}: must be of one: {keep or 'give a file for each, or a column for --where'}"
+                )
+
+
+def _off(x: Array, column: Array, one: Indices, other: Indices) -> float:
+    """Difference of a ``column`` between the rows ``one`` and ``other``, of the norm of the larger one."""
+    one = one[np.argsort(x[one])]
+    other = other[(x[other] >= x[one[0]]) & (x[other] <= x[one[-1]])]
+    beside = np.interp(x[other], x[one], column[one])
+    norm = float(np.linalg.norm(np.maximum(np.abs(beside), np.abs(column[other]))))
+    return float(np.linalg.norm(beside - column[other])) / (norm or 1.0)
+
+
+def _kept(labels: Iterable[Label], passes: Sequence[Indices], column: Array, advice: str) -> str:
+    """The ``advice`` on the first label that tells ``passes`` apart; empty if there is none."""
+    largest = max(passes, key=lambda rows: float(np.abs(column[rows]).sum()))
+    for label in labels:
+        kinds = [{label.values[row] for row in rows.tolist()} for rows in passes]
+        if all(len(kind) == 1 for kind in kinds) and len(set.union(*kinds)) == len(passes):
+            value = label.values[int(largest[0])]
+            kept = f"{value:g}" if isinstance(value, float) else str(value)
+            return f"{label.name} is {', '.join(label.kinds)}: " + advice.format(name=label.name, kept=kept)
+    return ""

@@ -18,12 +18,13 @@ _SHEARS = {"p": "q", "Fn": "Ft"}
 
 
 class _State(NamedTuple):
-    """Columns by name at one load point, ``made_of`` which expressions, in the file ``name``."""
+    """Columns by name at one load point, ``made_of`` which expressions, in the file ``name``; ``of`` which part."""
 
     name: str
     values: dict[str, Array]
     nodes: list[str] | None
     made_of: str
+    of: dict[str, str]
 
 
 def joined(parts: Sequence[tuple[str, Columns]], asked: Asked, scene: Scene) -> Columns:
@@ -41,7 +42,7 @@ def joined(parts: Sequence[tuple[str, Columns]], asked: Asked, scene: Scene) -> 
     notes = tuple(dict.fromkeys(note for _, columns in parts for note in columns.notes))
     rest: _State | None = None
     for name, columns in parts:
-        state = _averaged(_State(name, columns.values, columns.nodes, columns.made_of))
+        state = _averaged(_State(name, columns.values, columns.nodes, columns.made_of, columns.of))
         if rest:
             state = _beside(rest, state)
         rest = None if _whole(state, asked) else state
@@ -72,6 +73,8 @@ def _cycle(states: list[_State], asked: Asked, scene: Scene, notes: tuple[str, .
     if len(normals) > 1:
         raise InputError(f"{asked.origin}: columns p and Fn: must be the same in all files")
     (normal,) = normals
+    for state in states:
+        _check_of(states[second], state, ("part", "pair"))
     states = [_at_points_of(states[second], state) for state in states]
     shear, pressures = _SHEARS[normal], [state.values[normal] for state in states]
     values = {"x": states[second].values["x"], normal: pressures[second]}
@@ -124,9 +127,19 @@ def _beside(one: _State, other: _State) -> _State:
         )
     if "x" not in one.values or set(one.values) == {"x"}:
         one, other = other, one
+    _check_of(one, other, ("part", "step", "frame", "pair"))
     other = _at_points_of(one, other)
     made = ", ".join(dict.fromkeys(part for text in (one.made_of, other.made_of) for part in text.split(", ") if part))
-    return one._replace(values=other.values | one.values, made_of=made)
+    return one._replace(values=other.values | one.values, made_of=made, of=other.of | one.of)
+
+
+def _check_of(one: _State, other: _State, keys: Sequence[str]) -> None:
+    """Raise InputError if both say of what they are, and it is not the same."""
+    for key in keys:
+        if key in one.of and one.of[key].lower() != other.of.get(key, one.of[key]).lower():
+            raise InputError(
+                f"{one.name} is of {key} {one.of[key]}, {other.name} of {other.of[key]}: must be of one {key}"
+            )
 
 
 def _at_points_of(one: _State, other: _State) -> _State:
