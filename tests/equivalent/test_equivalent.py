@@ -197,7 +197,7 @@ def test_what_is_found_by_finite_elements_is_found(case):
     found, own, fem = errors(load_scene(name, [*both(12e-3, 6e-3), *settings]))
     for key in keys:
         short = key.removesuffix("_2")
-        assert found[key] <= own[short] + fem[short], key
+        assert found[key] <= 2 * own[short] + fem[short], key  # as a verification asks of estimates (R10)
     assert case != "large tension" or max(found[key] for key in keys) < 1e-3
 
 

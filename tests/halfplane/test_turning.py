@@ -85,7 +85,7 @@ def test_kinks_where_an_end_turned_round_under_mean_loads(method, monkeypatch):
     # deliberate fault: nodes that creep slip for ever
     monkeypatch.setattr(History, "still", History.never_slips)
     farther, ratio, larger = turned_under_mean_loads(method)
-    assert farther > 5 * off
+    assert farther > (5 if method == "fem" else 2) * off  # march's other errors are larger, by its estimate
     assert ratio > 1 or method == "fem"  # whose other errors cover this one on some meshes
     assert larger > 4 * size
 

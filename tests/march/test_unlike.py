@@ -248,7 +248,7 @@ def test_ends_of_a_pressed_stick_zone_are_known_no_better_than_those_of_the_cont
     """The stick zone is the same part of the contact while P increases: its ends share the contact's errors. With this
     friction it is all of the contact."""
     found = solved("friction.f=0.7", "load.Q=[0,0]")
-    assert found.m == found.n == pytest.approx(found.a)
+    assert found.m == found.n == pytest.approx(found.a, rel=2 * found.estimate["m"])
     assert found.estimate["a"] > 0
     assert min(found.estimate["m"], found.estimate["n"]) > 0.99 * found.estimate["a"]
 

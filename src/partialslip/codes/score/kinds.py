@@ -13,6 +13,7 @@ KINDS: dict[Kind, str] = {
     "mean": "means over cells",
     "nodal": "nodal forces of linear elements over the nodes' weights",
 }
+_FAR = 1e40  # limit: of the fitted window: farther points are as far, as powers of their distance overflow
 _INTEGRALS: dict[Kind, int] = {"sampled": 0, "mean": 1, "nodal": 2}  # fixed: of a power under its average
 
 
@@ -57,7 +58,7 @@ class Average(NamedTuple):
         factor = np.prod([powers + 1 + k for k in range(times)], axis=0)
 
         def integral(points: Array) -> Array:
-            return np.maximum(ends[:, None, None] - points, 0.0) ** (powers + times) / factor
+            return np.clip(ends[:, None, None] - points, 0.0, _FAR) ** (powers + times) / factor
 
         if self.kind == "sampled":
             return integral(here)

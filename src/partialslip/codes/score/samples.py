@@ -9,12 +9,13 @@ from partialslip.codes.score.ends import possible_averages
 from partialslip.codes.score.headers import FIRST
 from partialslip.codes.score.kinds import EVERY, Average, Kind, cells_around, cells_of_nodes
 from partialslip.codes.score.rows import check_equal_x, starts
-from partialslip.scene import LARGEST, SMALLEST
+from partialslip.scene import SMALLEST
 from partialslip.tools.arrays import Array, Mask
 from partialslip.tools.errors import InputError
 
 _DIGITS = 8  # accuracy: digits of x: numbers with fewer count as rounded
 _WHOLE = 1e-5  # accuracy: of a unit in the last place: deviation from a whole number of units
+LARGEST = 1e30  # limit: of a value of a table; powers of larger ones overflow
 PLAUSIBLE = f"zero or of a size from {SMALLEST} to {LARGEST}"
 FEWEST_POINTS = 6  # limit: points in contact that locate its ends
 
