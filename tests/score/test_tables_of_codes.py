@@ -297,7 +297,7 @@ def test_rows_of_sums_are_no_points(tmp_path, place):
     check(files(tmp_path, t__csv=semicolons), "left out: 4 lines of sums or extremes")
     for wrong, told in ((",0.05,26214,5200", "''"), ("Median,0.05,26214,5200", "'Median'")):
         (path,) = files(tmp_path, t__csv="\n".join([*rows[:at], wrong, *rows[at:]]))
-        assert f"line {at + 1}: {told}: must be a number" in line_of(score, SCENE, path)
+        assert f"line {at + 1}: Node = {told}: must be a number" in line_of(score, SCENE, path)
 
 
 @pytest.mark.parametrize("label", ["Node {}", "mean of faces", "Sum", "N{}"])
@@ -416,3 +416,24 @@ def test_a_heading_that_is_not_known_is_refused(tmp_path, heading):
 
 def test_a_comment_with_commas_is_a_heading(tmp_path):
     check(files(tmp_path, t__txt=text(ROWS[:, [0, 2, 1]], "# x,q,p", "\t")))
+
+
+# --- units and names that are of something else
+
+
+@pytest.mark.parametrize("head", ["x [mm],p [N/mm],q [MPa]", "x [MPa],p,q", "x,p,q [mm]", "x,p,q\nmm,MPa,mm"])
+def test_units_of_another_dimension_are_refused(tmp_path, head):
+    (path,) = files(tmp_path, t__csv=text(ROWS, head))
+    assert "must be in a unit of " in line_of(score, SCENE, path)
+
+
+def test_a_unit_that_is_not_known_is_told(tmp_path):
+    (path,) = files(tmp_path, t__csv=text(ROWS * [1, 10, 10], "x [mm],p [bar],q [bar]"))
+    assert "must be x; p or Fn" in line_of(score, SCENE, path)
+    columns = {"x": "x", "p": "p [bar]", "q2": "q [bar]"}
+    check(path, "unit bar of p is not known: read in MPa", columns=columns, factors=(1.0, 0.1, 0.1))
+
+
+def test_the_largest_shear_stress_is_no_shear_traction(tmp_path):
+    (path,) = files(tmp_path, t__csv=text(ROWS, "x,contact_pressure,max_shear_stress"))
+    assert "must be x; p or Fn" in line_of(score, SCENE, path)

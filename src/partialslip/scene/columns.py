@@ -2,7 +2,7 @@
 
 import re
 
-from partialslip.scene.units import LENGTHS
+from partialslip.scene.units import LENGTHS, Dimension
 
 #: Lengths by name, in lower case, m.
 LENGTH_WORDS = {
@@ -32,9 +32,31 @@ def is_unit(text: str) -> bool:
 def split_unit(name: str) -> tuple[str, float | None]:
     """Split a column's name into the name and the unit, as a factor to SI units; None if there is no unit. The unit is
     in brackets, or behind a slash, an underscore or a blank."""
+    own, unit = _parted(name)
+    return (own, SI_FACTORS[unit]) if unit in SI_FACTORS else (name, None)
+
+
+def dimension_of(name: str) -> Dimension | None:
+    """Dimension of the unit that a column's name states; None if there is none that is known."""
+    _, unit = _parted(name)
+    if unit not in SI_FACTORS:
+        return None
+    return "m" if unit in LENGTH_WORDS else "N/m" if unit in ("n/m", "n/mm") else "Pa"
+
+
+def unknown_unit(name: str) -> str:
+    """What stands in brackets behind a column's name and is no known unit; empty if there is none."""
+    parts = _BRACKETS.match(name)
+    unit = parts["unit"].strip() if parts else ""
+    return unit if any(map(str.isalpha, unit)) and unit.lower() not in SI_FACTORS else ""
+
+
+def _parted(name: str) -> tuple[str, str]:
+    """A column's name and what may be its unit, in lower case."""
     parts = _BRACKETS.match(name) or _BEHIND.match(name)
-    unit = (parts["unit"] or parts.groupdict().get("other") or "").strip().lower() if parts else ""
-    return (parts["name"], SI_FACTORS[unit]) if parts and unit in SI_FACTORS else (name, None)
+    if not parts:
+        return name, ""
+    return parts["name"], (parts["unit"] or parts.groupdict().get("other") or "").strip().lower()
 
 
 def place_of(name: str, names: list[str]) -> int | None:

@@ -170,7 +170,7 @@ def read_table(text: str, origin: str, loose: bool = False) -> TextTable:
         if not loose or is_value(re.split(r"[\s,;]", last.strip().replace(",", " "))[0]):
             raise
         names, head, ruled = _numbered(form)
-    rows, numbers, blocks, left = _rows(bare, form, first, (head, ruled), origin)
+    rows, numbers, blocks, left = _rows(bare, form, first, (names, head, ruled), origin)
     if len(rows) > MOST_ROWS:
         raise InputError(f"{origin}: {len(rows)} rows: must be at most {MOST_ROWS}")
     columns = _columns(rows, form, numbers, origin)
@@ -334,10 +334,10 @@ _Blocks = list[tuple[int, dict[str, str]]]
 
 
 def _rows(
-    bare: list[str], form: _Form, first: int, heading: tuple[int, list[str]], origin: str
+    bare: list[str], form: _Form, first: int, heading: tuple[list[str], int, list[str]], origin: str
 ) -> tuple[list[str], list[int], _Blocks, dict[tuple[str, str], int]]:
     """Rows with their line numbers, the first row of each block with its labels, and counts of lines left out."""
-    head, ruled = heading
+    names, head, ruled = heading
     again, labels = " ".join(bare[head - 1].split()) if head and not ruled else "", _labels(bare[:first])
     rows: list[str] = []
     numbers: list[int] = []
@@ -373,7 +373,8 @@ def _rows(
             left["line of a sum or an extreme", "lines of sums or extremes"] += 1
         elif is_row and not prose:
             if with_number and not _begins(fields):
-                raise InputError(f"{origin}: line {number}: {fields[0][:40]!r}: must be a number, as in other rows")
+                told = f"line {number}: {names[0]} = {fields[0][:40]!r}"
+                raise InputError(f"{origin}: {told}: must be a number, as in other rows")
             rows.append(line)
             numbers.append(number)
         elif ruled and not _is_row(fields):

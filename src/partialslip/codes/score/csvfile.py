@@ -11,6 +11,7 @@ from partialslip.codes.score.headers import (
     COLUMN_DIMENSIONS,
     NODES,
     Asked,
+    Wanted,
     check_no_heading,
     known,
     numbered,
@@ -21,7 +22,7 @@ from partialslip.codes.score.headers import (
 from partialslip.codes.score.rows import Label, check_equal_x, check_passes
 from partialslip.codes.score.samples import PLAUSIBLE, unusable
 from partialslip.scene import Scene
-from partialslip.scene.columns import place_of, split_unit
+from partialslip.scene.columns import dimension_of, place_of, split_unit, unknown_unit
 from partialslip.scene.texttable import TextTable
 from partialslip.scene.units import SI, Units
 from partialslip.tools.arrays import Array, Mask
@@ -97,6 +98,7 @@ def columns_of(table: TextTable, asked: Asked, chosen: Mapping[str, str] | None 
     else:  # a column without values is none
         filled = [not table.lines or not isinstance(each, list) or any(each) for each in table.columns]
         wanted = known([name if some else "" for name, some in zip(names, filled, strict=True)], asked)
+    notes += _units(wanted, names, units, asked.origin)
     used = sorted({each for column in wanted.values() for each in column.parts})
     numbers = {k: table.numbers(k, asked.origin) for k in used}
     missing = np.isnan(np.stack([*numbers.values()])).any(axis=0)
@@ -130,6 +132,22 @@ def columns_of(table: TextTable, asked: Asked, chosen: Mapping[str, str] | None 
     values = {name: column[kept] for name, column in values.items()}
     of = table.labels | dict(zip(("pair",), pairs(wanted), strict=False))
     return Columns(values, ", ".join(expressions), tuple(notes), moment, labels, of)
+
+
+def _units(wanted: Mapping[str, Wanted], names: list[str], units: Units, origin: str) -> list[str]:
+    """Notes on the ``wanted`` columns in a unit that is not known.
+
+    Raises InputError if a unit is of another dimension than the column.
+    """
+    notes = []
+    for name, each in wanted.items():
+        unit = units.label(COLUMN_DIMENSIONS[name])
+        for k in each.parts:
+            if dimension_of(names[k]) not in (None, COLUMN_DIMENSIONS[name]):
+                raise InputError(f"{origin}: column {names[k]!r}: must be in a unit of {name}, as {unit}")
+            if stated := unknown_unit(names[k]):
+                notes.append(f"unit {stated} of {name} is not known: read in {unit}; correct with --factors")
+    return notes
 
 
 def _is_over(text: str, scale: str) -> bool:

@@ -244,7 +244,8 @@ def _made_of(text: str, names: list[str], asked: Asked) -> Wanted:
 def _listed(name: str, signs: Mapping[str, int]) -> str:
     """The name in ``signs`` that ``name`` is or ends in; empty if there is none."""
     return name if name in signs else next(
-        (each for each in signs if len(each) >= _ENDS and name.endswith(f"_{each}")), ""
+        (each for each in signs if len(each) >= _ENDS and name.endswith(f"_{each}") and name[:3] not in ("max", "min")),
+        "",
     )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ _EQUAL = 1e-7  # accuracy: of the points' extent: largest distance of rows at eq
 _NOTHING = 1e-9  # accuracy: of the norm: differences due to rounding
 _FEW = 12  # display: most values of a column that tells rows apart
 _PASS = 12  # limit: fewest rows of a pass over the contact
-_IN_TURN = 0.5  # limit: of the norm: difference of every other row from those beside it
+_IN_TURN = 0.5  # limit: of the norm: largest difference of every other row from those beside it
 
 
 class Label(NamedTuple):
@@ -90,17 +90,16 @@ def check_passes(values: Mapping[str, Array], labels: Iterable[Label], origin: s
     Raises
     ------
     InputError
-        If they differ, in a norm, by more than the largest bar; or by half of it where rows are in turn.
+        If they differ, in a norm, by more than the largest bar; where rows are in turn, by half of the norm.
     """
     x, *columns = values.values()
-    pressed = x[np.any(np.stack(columns) != 0, axis=0)]
+    pressed = np.flatnonzero(np.any(np.stack(columns) != 0, axis=0))
     if len(pressed) < 2 * _PASS:
         return
-    inside = np.flatnonzero((x >= pressed.min()) & (x <= pressed.max()))
-    way = np.sign(np.diff(x[inside]))
-    runs = np.split(inside, np.flatnonzero(np.diff(way)) + 1)
-    runs = [run for run in runs if len(run) >= _PASS and np.ptp(x[run]) > np.ptp(pressed) / 2]
-    order = inside[np.argsort(x[inside], kind="stable")]
+    way = np.sign(np.diff(x[pressed]))
+    runs = np.split(pressed, np.flatnonzero(np.diff(way)) + 1)
+    runs = [run for run in runs if len(run) >= _PASS and np.ptp(x[run]) > np.ptp(x[pressed]) / 2]
+    order = pressed[np.argsort(x[pressed], kind="stable")]
     for passes, limit in ((runs, LARGEST), ([order[::2], order[1::2]], _IN_TURN)):
         for one in passes[1:]:
             off = {name: _off(x, column, passes[0], one) for name, column in zip([*values][1:], columns, strict=True)}
