@@ -8,10 +8,20 @@ from partialslip.march.cells import off_cells, on_cells
 from partialslip.tools.arrays import Array
 from partialslip.tools.bars import LEAST_SHEAR
 
+_CELLS = 4.0  # accuracy: a zone of fewer cells is unresolved
+
 
 def of_ends(found: Array, others: Array) -> float:
     """The largest change of left and right ends: where one of them happens to stay, it is not known any better."""
     return float(np.abs(found - others).max())
+
+
+def unseen(vertices: Array, zone: Array) -> float:
+    """Half of a cell where the ``zone`` (left and right end) is narrower than a few cells between ``vertices`` (n + 1,):
+    meshes that do not resolve a zone agree on where it is not. Otherwise zero."""
+    cells = np.diff(vertices)
+    size = float(cells[np.clip(np.searchsorted(vertices, zone) - 1, 0, len(cells) - 1)].max())
+    return size / 2 if zone[1] - zone[0] < _CELLS * size else 0.0
 
 
 def of_shear(vertices: Array, history: History, cells: Array, other: History) -> Errors:

@@ -29,7 +29,8 @@ from partialslip.tools.bars import BARS
 # accuracy: growth of cells, mesh by mesh: sqrt(2), for :meth:`CellProblem.mesh_errors`. On the first mesh nothing is
 # known of the stick zone; out of phase the second one is to find it, too
 _GROWTHS = (0.28, 0.28, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 0.0175)
-MESHES = tuple((4e-3 * growth, growth) for growth in _GROWTHS)  # accuracy: (cell size at the ends, in a; growth)
+# accuracy: (cell size at the ends, in a; growth): fine meshes look for narrow zones with far smaller cells
+MESHES = tuple((min(4e-3 * growth, 2.0 * growth**3.3), growth) for growth in _GROWTHS)
 COARSE = 3  # accuracy: of these, before the first one whose errors are estimated
 _TIMES = 2.0  # accuracy: errors over changes (measured: benchmarks/estimates.py)
 _LEFT = 3.0  # cost: times the seconds of the next mesh that must be left: finite elements follow in the same run

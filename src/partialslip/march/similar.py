@@ -110,7 +110,8 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
     def changes(self, level: SimilarLevel, other: SimilarLevel) -> Errors:
         assert level.history
         assert other.history
-        moved = changes.of_ends(np.array(level.zone), np.array(other.zone))
+        zone = np.array(level.zone)
+        moved = max(changes.of_ends(zone, np.array(other.zone)), changes.unseen(level.vertices, zone))
         shear = changes.of_shear(level.vertices, level.history, other.vertices, other.history)
         return dict.fromkeys("mn", moved * self.normal.frame.a / self.normal.largest.a) | shear
 
