@@ -17,7 +17,7 @@ def of_ends(found: Array, others: Array) -> float:
 
 
 def unseen(vertices: Array, zone: Array) -> float:
-    """Half of a cell where the ``zone`` (left and right end) is narrower than a few cells between ``vertices`` (n + 1,):
+    """Half of a cell where the ``zone`` (left, right end) is narrower than a few cells between ``vertices`` (n + 1,):
     meshes that do not resolve a zone agree on where it is not. Otherwise zero."""
     cells = np.diff(vertices)
     size = float(cells[np.clip(np.searchsorted(vertices, zone) - 1, 0, len(cells) - 1)].max())
