@@ -11,9 +11,10 @@ from varying_scenes import varying
 
 import partialslip
 from partialslip.halfplane import contact, one_step_zone
-from partialslip.march import driver
+from partialslip.march import changes, driver
 from partialslip.tools.allowance import Allowance
 from partialslip.tools.bars import BARS
+from partialslip.verify.benchmark import read_problems
 from partialslip.verify.hard_cases import hard_scene
 
 MEAN = ["load.Q=[31415.926535897932, 219911.48575128554]", "load.sigma=[2e8, 1e9]"]  # 0.1 .. 0.7 fP, 1 .. 5 f p0
@@ -273,3 +274,18 @@ def test_load_points_that_repeat_change_nothing():
         found.append(partialslip.run(scene, "march")["march"])
     once, twice = found
     assert (twice.m, twice.n) == pytest.approx((once.m, once.n), abs=1e-5 * once.a)
+
+
+@pytest.mark.fault
+def test_meshes_that_miss_a_narrow_zone_do_not_agree(monkeypatch):
+    """PS-07, a stick zone of 1e-4 a. Without what its cells cannot see, meshes agree on a zone that is none."""
+    scene = read_problems()["PS-07"].scene.replace({"fem.accuracy": 1e-3})
+    exact = partialslip.run(scene, ["exact"])["exact"]
+
+    def beyond():
+        found = partialslip.run(scene, ["march"])["march"]
+        return max(abs(found.m - exact.m), abs(found.n - exact.n)) / found.a / max(found.estimate["m"], 1e-9)
+
+    assert beyond() < 1
+    monkeypatch.setattr(changes, "unseen", lambda *_: 0.0)
+    assert beyond() > 100
