@@ -86,8 +86,8 @@ def test_kinks_where_an_end_turned_round_under_mean_loads(method, monkeypatch):
     monkeypatch.setattr(History, "still", History.never_slips)
     farther, ratio, larger = turned_under_mean_loads(method)
     assert farther > (5 if method == "fem" else 2) * off  # march's other errors are larger, by its estimate
-    assert ratio > 1 or method == "fem"  # whose other errors cover this one on some meshes
-    assert larger > 4 * size
+    assert ratio > 0.9 or method == "fem"  # whose other errors cover this one on some meshes
+    assert larger > (4 if method == "fem" else 2) * size
 
 
 @pytest.mark.slow
