@@ -114,7 +114,7 @@ class _Mesh:
         self.lines: list[Indices] = []  # edges of line elements
         self.counted = [0, 0]  # nodes, plane elements
         parts: dict[str, _Scope] = {}
-        instances: list[tuple[_Scope, list[_Card]]] = []
+        instances: list[tuple[_Scope, _Card]] = []
         whole = here = _Scope()
         for card in cards:
             _refuse_unread(card)
@@ -127,20 +127,20 @@ class _Mesh:
                     raise InputError(f"*INSTANCE {name}: PART = {card.parameters['PART']!r} is no *PART of the deck")
                 own = parts.get(part, _Scope())
                 here = _Scope(name, [*own.nodes], [*own.elements], own.left_out, [*own.unused], [*own.sets])
-                instances.append((here, [card]))
+                instances.append((here, card))
             elif card.keyword in ("END PART", "END INSTANCE", "ASSEMBLY", "END ASSEMBLY"):
                 here = whole
             else:
                 _collect(here, card)
-        placed = {scope.name.lower(): self._placed(scope, _shift(own)) for scope, (own,) in instances}
-        of_parts = Counter(own.parameters.get("PART", "") for _, (own,) in instances)
+        placed = {scope.name.lower(): self._placed(scope, _shift(card)) for scope, card in instances}
+        of_parts = Counter(card.parameters.get("PART", "") for _, card in instances)
         if not instances:
             placed = {name: self._placed(part) for name, part in parts.items()}
         top = self._placed(whole, inside=placed)
         self.found = Found(np.concatenate(self.points), self.cells)
         for each in [*placed.values(), top]:
             self._name_groups(each)
-        for scope, (card,) in instances:  # a part with one instance by its own name, too
+        for scope, card in instances:  # a part with one instance by its own name, too
             part = card.parameters.get("PART", "")
             if of_parts[part] == 1 and part.lower() not in self.found.groups:
                 self.found.group(part).elements.extend(self.found.group(scope.name).elements)
@@ -183,12 +183,19 @@ class _Mesh:
         kinds = dict.fromkeys((kind, name.lower()) for kind, name, _ in scope.sets)
         for kind, name in sorted(kinds, key=lambda each: each[0] == "SURFACE"):  # goes before a set of the same name
             shown = next(each for _, each, _ in scope.sets if each.lower() == name)
+            own = Group(shown)
+            try:
+                self._fill(own, placed, kind, name)
+            except InputError as error:
+                own.fault = str(error)
             for key in (shown, f"{scope.name}.{shown}") if scope.name else (shown,):
                 group = found.group(key)
-                try:
-                    self._fill(group, placed, kind, name)
-                except InputError as error:
-                    group.fault = str(error)
+                if kind == "SURFACE":
+                    group.nodes, group.edges = [], []
+                group.nodes += own.nodes
+                group.edges += own.edges
+                group.elements += own.elements
+                group.fault = group.fault or own.fault
 
     def _fill(self, group: Group, placed: _Placed, kind: str, name: str) -> None:
         """Add the members of a set or surface to the ``group``."""
@@ -199,7 +206,6 @@ class _Mesh:
             group.elements.append(members[members >= 0])
             group.edges.append(joined(self.lines, 2)[-1 - members[members < 0]])
         else:
-            group.nodes, group.edges = [], []
             self._surface(placed, name, group.nodes, group.edges)
 
     def _nodes(self, placed: _Placed, name: str, above: tuple[str, ...] = ()) -> Indices:
@@ -232,16 +238,18 @@ class _Mesh:
             begin += len(cells)
         return np.unique(np.concatenate(found))
 
-    def _surface(self, placed: _Placed, name: str, nodes: list[Indices], edges: list[Indices]) -> None:
+    def _surface(
+        self, placed: _Placed, name: str, nodes: list[Indices], edges: list[Indices], above: tuple[str, ...] = ()
+    ) -> None:
         """Add what the ``*SURFACE`` of this ``name`` has to ``nodes`` and ``edges``."""
-        for card in _of(placed, "SURFACE", name, ()):
+        for card in _of(placed, "SURFACE", name, above):
             assert isinstance(card, _Card)
             kind, joins = card.parameters.get("TYPE", "ELEMENT").upper(), card.parameters.get("COMBINE", "").upper()
             if kind not in ("ELEMENT", "NODE") or joins not in ("", "UNION"):
                 raise InputError(f"must be a surface of elements or nodes; {name!r} is of {joins or kind}")
             if joins:
                 for other in (each for row in card.rows for each in row if each):
-                    self._surface(placed, other.lower(), nodes, edges)
+                    self._surface(placed, other.lower(), nodes, edges, (*above, name))
                 continue
             of_nodes = kind == "NODE"
             for member, label, *_ in ([*row, ""] for row in card.rows):
@@ -286,7 +294,7 @@ class _Mesh:
 def _numbered(placed: _Placed, numbers: Indices, told: str) -> Indices:
     """Places of the elements of a scope with these ``numbers``; those that are no part of a body have none."""
     ids, places = placed.elements
-    missing = numbers[~np.isin(numbers, [*ids, *joined(placed.scope.unused)])]
+    missing = numbers[~np.isin(numbers, np.concatenate([ids, joined(placed.scope.unused)]))]
     if len(missing):
         raise InputError(f"must have elements that exist; {told} has the element {missing[0]}")
     return places[np.isin(ids, numbers)]
@@ -367,11 +375,12 @@ def _split(placed: _Placed, member: str) -> tuple[_Placed, str]:
 
 
 def _members(placed: _Placed, own: _Card | Indices) -> Iterator[tuple[_Placed, Indices, list[str]]]:
-    """Scope, node or element numbers (k,) and names of sets (lower case) of the members of a set, line by line."""
+    """Scope, node or element numbers (k,) and names of sets (lower case) of the members of a set."""
     if not isinstance(own, _Card):
         yield placed, own, []
         return
-    target, none = _target(placed, own), joined([])
+    target, listed, names = _target(placed, own), list[Indices](), list[str]()
+    elsewhere: list[tuple[_Placed, Indices, list[str]]] = []
     for row in own.rows:
         given = [each for each in row if each]
         if "GENERATE" in own.parameters:
@@ -382,13 +391,18 @@ def _members(placed: _Placed, own: _Card | Indices) -> Iterator[tuple[_Placed, I
                     f"must have a first number, a last one and a step below GENERATE, not {', '.join(row)}"
                 )
             ids = target.nodes[0] if own.keyword == "NSET" else target.elements[0]
-            yield target, ids[(ids >= low) & (ids <= high) & ((ids - low) % step == 0)], []
+            listed.append(ids[(ids >= low) & (ids <= high) & ((ids - low) % step == 0)])
             continue
-        yield target, _integers([each for each in given if each.isdecimal()], own.keyword), []
+        listed.append(_integers([each for each in given if each.isdecimal()], own.keyword))
         for where, member in (_split(target, each) for each in given if not each.isdecimal()):
-            yield (
-                (where, _integers([member], own.keyword), []) if member.isdecimal() else (where, none, [member.lower()])
-            )
+            if member.isdecimal():
+                elsewhere.append((where, _integers([member], own.keyword), []))
+            elif where is target:
+                names.append(member.lower())
+            else:
+                elsewhere.append((where, joined([]), [member.lower()]))
+    yield target, joined(listed), names
+    yield from elsewhere
 
 
 def _integers(texts: Sequence[str], keyword: str) -> Indices:

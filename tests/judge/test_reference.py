@@ -13,6 +13,7 @@ from partialslip.result import RATCHETS
 from partialslip.run import default_methods
 from partialslip.run.judge import Outcome, verdicts
 from partialslip.run.judge.reference import ALL_EFFECTS, error_of, reference, reference_among
+from partialslip.run.methods import SOLVERS
 from partialslip.tools.methods import METHODS, REFERENCES
 
 KNOWN = {"a": 1e-6, "p": 1e-6, "m": 1e-6, "n": 1e-6, "q": 1e-6}
@@ -190,3 +191,7 @@ def test_a_path_that_turns_is_not_judged_by_one_step():
     assert (run.outcome, run.conclusion.code) == (Outcome.NOT_JUDGED, 4)
     assert run.conclusion.unjudged == ("m", "n", "q", "q1", "q2")
     assert run.comparisons["exact"].errors["m"] == pytest.approx(0.19, abs=0.01)
+
+
+def test_every_method_that_has_a_name_solves():
+    assert list(SOLVERS) == list(METHODS)

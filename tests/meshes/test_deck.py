@@ -189,6 +189,7 @@ def test_layouts_of_decks_make_no_difference(mesh, text, tmp_path):
 @pytest.mark.parametrize(("lines", "said"), [
     ("*SURFACE, NAME=CONTACT\n99999, S3\n", "must have elements that exist; the surface 'contact' has"),
     ("*SURFACE, NAME=CONTACT, TYPE=SEGMENTS\nSTART, -1., 1.\n", "'contact' is of SEGMENTS"),
+    ("*SURFACE, NAME=CONTACT, COMBINE=UNION\ncontact\n", "SURFACE 'contact' refers to itself"),
     ("*NSET, NSET=contact, GENERATE\n9, 3\n", "a first number, a last one and a step below GENERATE, not 9, 3"),
 ])  # fmt: skip
 def test_groups_that_cannot_be_meant_are_told(text, tmp_path, lines, said):

@@ -16,6 +16,12 @@ def of_ends(found: Array, others: Array) -> float:
     return float(np.abs(found - others).max())
 
 
+def of_zone(vertices: Array, zone: Array, other: Array) -> float:
+    """Change of the stick ``zone`` (left, right end) on cells between ``vertices`` (n + 1,) since the ``other``, and no
+    less than what these cells cannot see."""
+    return max(of_ends(zone, other), unseen(vertices, zone))
+
+
 def unseen(vertices: Array, zone: Array) -> float:
     """Half of a cell where the ``zone`` (left, right end) is narrower than a few cells between ``vertices`` (n + 1,):
     meshes that do not resolve a zone agree on where it is not. Otherwise zero."""

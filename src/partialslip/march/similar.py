@@ -110,8 +110,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
     def changes(self, level: SimilarLevel, other: SimilarLevel) -> Errors:
         assert level.history
         assert other.history
-        zone = np.array(level.zone)
-        moved = max(changes.of_ends(zone, np.array(other.zone)), changes.unseen(level.vertices, zone))
+        moved = changes.of_zone(level.vertices, np.array(level.zone), np.array(other.zone))
         shear = changes.of_shear(level.vertices, level.history, other.vertices, other.history)
         return dict.fromkeys("mn", moved * self.normal.frame.a / self.normal.largest.a) | shear
 

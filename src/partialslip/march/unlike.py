@@ -131,9 +131,8 @@ class UnlikeBodies(driver.CellProblem[UnlikeLevel]):
         found = dict.fromkeys(("a", "left", "right"), changes.of_ends(np.array(level.ends), np.array(other.ends)) / a)
         found["p"] = changes.of_traction(meshes[0], level.pressing.x, meshes[1], other.pressing.x)
         if level.stick and other.stick:
-            zone, before = (np.array([stick.left, stick.right]) for stick in (level.stick, other.stick))
-            moved = max(changes.of_ends(zone, before), changes.unseen(level.vertices, zone))
-            found |= dict.fromkeys("mn", moved / a)
+            zones = (np.array([stick.left, stick.right]) for stick in (level.stick, other.stick))
+            found |= dict.fromkeys("mn", changes.of_zone(meshes[0], *zones) / a)
         if level.history and other.history:
             found |= changes.of_shear(meshes[0], level.history, meshes[1], other.history)
         return found
