@@ -107,15 +107,16 @@ def _check_pivot(scene: Scene) -> None:
 
 
 def _check_sizes(scene: Scene) -> None:
-    """Raise InputError for flats and bodies whose size would be lost to rounding."""
+    """Raise InputError for flats and bodies whose size would be lost to rounding, and for infinite ones."""
+    scene.bodies.require_widths("for fem")
     if max(map(abs, scene.profile.kinks), default=0.0) > _FLATTEST * scene.length:
         raise InputError(f"load.P = {scene.units.plain(scene.P, 'N/m')}: must press the contact beyond its flat")
     for name, own in (("lower", scene.bodies.lower), ("upper", scene.bodies.upper)):
-        for key, size in (("width", own.width), ("height", own.height)) if own else ():
+        for key, size in (("width", own.span), ("height", own.height)) if own and not own.mesh else ():
             if size is not None and not _SIZES[0] <= size / scene.length <= _SIZES[1]:
                 low, high = (scene.units.plain(share * scene.length, "m", 2) for share in _SIZES)
                 given = scene.units.from_si(size, "m")
                 raise InputError(f"bodies.{name}.{key} = {given}: must be from {low} to {high} in this contact")
-        if own and own.height and own.width and own.height > _SLENDER * own.width:
+        if own and own.height and own.height > _SLENDER * own.span:
             height = scene.units.from_si(own.height, "m")
             raise InputError(f"bodies.{name}.height = {height}: must be <= {_SLENDER:g} times bodies.{name}.width")

@@ -405,6 +405,6 @@ def _finite(plain: Part, body: Body | None, scene: Scene, L: float) -> Part:
         return replace(part, mesh=read(field, body.mesh, unit, face, sorted(needed), body.body, groups))
     return replace(
         part,
-        extent=((body.width or 0.0) / 2 / L, (body.height or 0.0) / L),
+        extent=(body.span / 2 / L, (body.height or 0.0) / L),
         holder=(holder.width / 2 / L, holder.height / L) if holder else None,
     )

@@ -10,7 +10,7 @@ from partialslip import halfplane
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.levels import levels
-from partialslip.halfplane.loading import loading
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.punch import Punch
 from partialslip.scene import Load
 

@@ -13,7 +13,7 @@ import pytest
 import partialslip
 from partialslip.halfplane import contact, method
 from partialslip.halfplane.hertz import HertzShape
-from partialslip.halfplane.loading import loading
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.steady import stick_zones
 from partialslip.halfplane.turning import Turning
 from partialslip.result import StickZone

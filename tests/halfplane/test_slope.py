@@ -14,7 +14,8 @@ from partialslip import halfplane
 from partialslip.halfplane import steady
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.hertz import HertzShape
-from partialslip.halfplane.loading import loading, one_step
+from partialslip.halfplane.loading import one_step
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.punch import Punch
 from partialslip.halfplane.shape import Conditions
 from partialslip.halfplane.slip import density, slip

@@ -6,8 +6,8 @@ from plain import plain
 
 import partialslip
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.loading import loading
 from partialslip.halfplane.method import spacing_error
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.punch import Punch, _unit
 from partialslip.halfplane.shape import Given
 from partialslip.halfplane.tables import table_error

@@ -10,7 +10,7 @@ from tables import written
 
 from partialslip import halfplane, load_scene, run, score
 from partialslip.cli import main
-from partialslip.halfplane.loading import loading
+from partialslip.halfplane.proportional import loading
 from partialslip.run.judge import Outcome
 
 BAR = 1e-3

@@ -102,11 +102,12 @@ def result_of(scene: Scene, found: Answer, inside: bool, clock: Clock) -> Result
     largest = (first, second)[scene.largest - 1]
     far = abs(sum(largest.ends) / 2 if anew else largest.centre) + SURFACE_REACH * largest.a
     why = undetermined(regime, turns, levels) | (no_stresses(levels) if inside and not stress else {})
+    bodies, varying = "strips" if largest.layer else "half-planes", " under varying pressure" if anew else ""
     state = state._replace(notes=remarks(regime, turns, why, anew))
     return replace(
         Result.of("exact", state, largest.a, largest.p0, Traction(x, tractions.at(x), tractions.at, breaks), clock),
         slip=found.slip,
-        settings={"model": f"two half-planes, steady state{' under varying pressure' if anew else ''}"},
+        settings={"model": f"two {bodies}, steady state{varying}"},
         limits=found.limits,
         certificate=found.certificate,
         surface=along_surface(stress.surface, np.sort([-far, *breaks, far])) if stress else None,

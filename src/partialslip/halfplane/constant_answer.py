@@ -43,7 +43,7 @@ def limits(scene: Scene, pressed: Contact, change: Change | None) -> dict[str, f
     limit = pressed.f * scene.P
     known = {"Q_sliding": limit}
     if change:
-        if not change.gf:
+        if not (change.gf or pressed.layer):
             known["dsigma_transition"] = float(transition(change.Qf, change.seen)) * pressed.f * pressed.p0
         known["Q_mean"] = limit * change.mean_load_bound
     return known

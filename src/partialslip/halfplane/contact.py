@@ -3,11 +3,14 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from partialslip.halfplane.hertz import HertzShape
+from partialslip.halfplane.layer import Layer
+from partialslip.halfplane.pressed_layers import on_layers
 from partialslip.halfplane.punch import Punch, punch_force
 from partialslip.halfplane.shape import Bound, Given, Shape
 from partialslip.halfplane.steady import TOO_STEEP, UNEVEN_FRICTION, drive, stick_zones
@@ -31,7 +34,8 @@ class Contact:
     """Two half-planes pressed together: contact half-width ``a`` (m), normal force ``P`` (N/m), ``shape``, the scaled
     pressure (:mod:`partialslip.halfplane.shape`), middle of the contact ``centre`` (m), and ``tilt`` (rad), the angle
     by which the bodies have turned. ``f`` is the coefficient of friction of the scene, and where it varies along x its
-    mean over the pressure; ``bound`` is then f(x) p over f p0 (None if f does not vary)."""
+    mean over the pressure; ``bound`` is then f(x) p over f p0 (None if f does not vary). ``layer`` is what the bodies
+    add to half-planes, if they are two equal layers."""
 
     a: float
     P: float
@@ -40,6 +44,7 @@ class Contact:
     tilt: float = 0.0
     f: float = math.nan
     bound: Shape | None = None
+    layer: Layer | None = None
 
     def __repr__(self) -> str:
         shape = type(self.shape).__name__
@@ -84,7 +89,8 @@ class Contact:
 
 
 def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
-    """Contact of ``scene`` as two half-planes of one material, under ``pressing``; default: P and M of the scene.
+    """Contact of ``scene`` as two half-planes, or two equal strips, of one material, under
+    ``pressing``; default: P and M of the scene.
 
     Hertz: P = pi a^2/(2 A R). Profiles whose curvature steps by w at |x| = b (flat and rounded: by 1/R at b):
     P = a^2/(2 A) sum w (2 psi - sin 2 psi), b = a cos(psi) (Ciavarella, Hills and Monno, 1998). A moment moves a Hertz
@@ -96,7 +102,12 @@ def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
         If the materials differ, the contact extends beyond the table of the profile, or P is too small for the contact
         to extend beyond the flat.
     """
-    return rubbing(_normal_contact(scene, pressing), scene)
+    P, M = pressing or (scene.P, scene.M)
+    if not scene.strips:
+        return rubbing(_normal_contact(scene, Pressing(P, M)), scene)
+    kappa = scene.material.bodies[0].kappa
+    layer = Layer(scene.strips, (3 - kappa) / (1 + kappa))
+    return rubbing(on_layers(layer, scene.material.A, P, partial(_half_planes, scene), scene.profile.even), scene)
 
 
 def rubbing(pressed: Contact, scene: Scene) -> Contact:
@@ -110,13 +121,12 @@ def rubbing(pressed: Contact, scene: Scene) -> Contact:
     return replace(pressed, f=bound.scale, bound=bound)
 
 
-def _normal_contact(scene: Scene, pressing: Pressing | None) -> Contact:
+def _normal_contact(scene: Scene, pressing: Pressing) -> Contact:
     if not scene.material.alike:
         raise InputError(
             "material.upper, material.lower: the bodies differ; must be of one material for exact, use march or fem"
         )
-    A, profile = scene.material.A, scene.profile
-    P, M = pressing or (scene.P, scene.M)
+    A, profile, (P, M) = scene.material.A, scene.profile, pressing
     if isinstance(profile, Hertz):
         a, origin = math.sqrt(2 * A * profile.R * P / math.pi), (M or 0.0) / P
         return Contact(a, P, HertzShape(), origin, origin / profile.R)
@@ -160,14 +170,18 @@ def tilted_contact(scene: Scene, P: float, tilt: float) -> Contact:
     InputError
         As :func:`contact`.
     """
-    profile = scene.profile
+    return rubbing(_half_planes(scene, P, tilt), scene)
+
+
+def _half_planes(scene: Scene, P: float, tilt: float) -> Contact:
+    """As :func:`tilted_contact`, without friction."""
     if tilt == 0:
-        return contact(scene, Pressing(P, None))
-    if isinstance(profile, Hertz):
-        turned = replace(_normal_contact(scene, Pressing(P, None)), centre=tilt * profile.R)
+        return _normal_contact(scene, Pressing(P, None))
+    if isinstance(scene.profile, Hertz):
+        turned = replace(_normal_contact(scene, Pressing(P, None)), centre=tilt * scene.profile.R)
     else:
-        turned = _uneven(scene, profile.curvature.tilted(tilt), Pressing(P, None))
-    return rubbing(replace(turned, tilt=tilt), scene)
+        turned = _uneven(scene, scene.profile.curvature.tilted(tilt), Pressing(P, None))
+    return replace(turned, tilt=tilt)
 
 
 def _uneven(scene: Scene, gap: Curvature, pressing: Pressing) -> Contact:

@@ -11,7 +11,8 @@ import numpy as np
 from partialslip.halfplane.change import Change
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.gradual_path.stage import LostError
-from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.loading import Loading
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.shape import places_between
 from partialslip.halfplane.turning import Turned, Turning
 from partialslip.result import PATH_DEPENDENT
@@ -22,6 +23,9 @@ from partialslip.tools.errors import InputError
 # why there are no q1 and q2
 FRICTIONLESS, SLIDES, RATCHETS = "there is no friction", "the contact slides", "the contact ratchets"
 STARTED = "the path goes on from a state, which the closed form cannot follow"
+PRESSED = (
+    "bodies that are not held alike lock shear in when they are pressed, which is not followed; use width = 'infinite'"
+)
 _ROUNDING = 1e-9  # accuracy: tolerance: lengths in a, tractions in f p0, slip in A f p0 a
 _PLACES = np.cos(np.linspace(np.pi, 0, 81))[1:-1]
 _SHARES = np.linspace(0, 1, 9)[1:-1]
@@ -86,6 +90,8 @@ def levels(pressed: Contact, f: float, load: Load, cycle: Change) -> Levels | st
 
     Fully reversed loads satisfy all conditions if each half cycle is one step.
     """
+    if pressed.layer and pressed.layer.drags:
+        return PRESSED
     points = [load.along[end] for end in load.ends]
     if isinstance(cycle, Turning):
         return _where_slip_turns(pressed, f, load, cycle)

@@ -155,7 +155,7 @@ class Loading(Change):
         return self.turns_round and not self._simple and bool(np.isnan(self._zones_at_stages.half_width).any())
 
 
-def loading(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, bound: int) -> Loading:
+def in_half_planes(pressed: Contact, f: float, dQ: float, dsigma: float, dslope: float = 0.0, *, bound: int) -> Loading:
     """Loading by ``dQ`` (N/m), ``dsigma`` (Pa) and ``dslope`` (Pa/m) of any sign, with |dQ| < ``bound`` f P.
 
     Raises

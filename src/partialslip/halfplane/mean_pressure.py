@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.loading import Loading
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.shape import Shape
 from partialslip.scene import Scene
 from partialslip.tools.arrays import Array

@@ -9,7 +9,7 @@ from partialslip.halfplane.answer import result_of, without_cycle
 from partialslip.halfplane.change import Change
 from partialslip.halfplane.constant_answer import limits, under_constant_pressure
 from partialslip.halfplane.contact import Contact, contact
-from partialslip.halfplane.loading import loading
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.tables import table_error
 from partialslip.halfplane.turning import half_cycle
 from partialslip.halfplane.varying import closed_form, require_closed_form, steady_cycle
@@ -46,12 +46,14 @@ def solve(
         If there is no closed form: loads are out of phase, or P or M varies and an end of the contact does not slip.
     """
     del progress
-    clock = Clock()
+    clock, scene = Clock(), scene.evenly_gripped
     load = scene.load
     if not load.in_phase:
         raise InputError("load.sigma: out of phase with load.Q; must be in phase for the exact method, use march")
     slipping, started, inside = plan.needs("friction"), start is not None, plan.needs("subsurface")
     if scene.presses_anew:
+        if scene.strips:
+            raise InputError(f"load.{scene.varying[0]}: must be constant for exact, as strips take part; use march")
         if slipping:
             require_closed_form(scene)
         return result_of(scene, under_varying_pressure(scene, slipping, started, inside), inside, clock)
@@ -69,8 +71,14 @@ def has_closed_form(scene: Scene) -> bool:
     """Whether the steady state of ``scene``, two similar half-planes under loads in phase, has an exact solution here:
     by formulas, quadratures or an integral equation; under constant pressure unless sigma_slope is too large or f
     varies so much along x that more than one zone sticks."""
-    if not ((scene.presses_anew or scene.load.dslope or scene.friction.varies) and plan(scene).needs("friction")):
+    scene = scene.evenly_gripped
+    if not (
+        (scene.presses_anew or scene.load.dslope or scene.friction.varies or scene.strips)
+        and plan(scene).needs("friction")
+    ):
         return True
+    if scene.strips and scene.presses_anew:
+        return False
     try:
         return not closed_form(scene) if scene.presses_anew else bool(_change(scene).cycle)
     except InputError:
@@ -83,7 +91,7 @@ def spacing_error(scene: Scene) -> dict[str, float]:
 
     An error of the input: it is the same for all methods, and no part of their estimates, bars and verdicts.
     """
-    half_planes = not scene.finite and scene.material.alike and scene.load.in_phase and not scene.presses_anew
+    half_planes = not scene.sized and scene.material.alike and scene.load.in_phase and not scene.presses_anew
     if not (isinstance(scene.profile, Tabulated) and half_planes) or (scene.load.dslope and not has_closed_form(scene)):
         return {}
     if scene.free or scene.slides or not plan(scene).needs("friction"):
@@ -94,6 +102,7 @@ def spacing_error(scene: Scene) -> dict[str, float]:
 def path_dependent(scene: Scene) -> bool:
     """Whether slip reverses between the load points of ``scene``, two similar half-planes under loads in phase, and the
     steady state under gradual loads is not known (:attr:`partialslip.Result.path_dependent`)."""
+    scene = scene.evenly_gripped
     if scene.presses_anew:
         return steady_cycle(scene).turns_round
     return may_turn_round(scene) and not _change(scene).cycle.holds

@@ -201,6 +201,15 @@ def rule_between(ends: Array, edge: Array | float, c: Array | float, side: int) 
     return Rule(np.clip(t, -1.0, 1.0), points, (half * factors).reshape(points.shape))
 
 
+def rule_over(ends: Array) -> tuple[Array, Array]:
+    """Points (n,) and weights of quadrature between neighbouring ``ends`` (k,), ascending, of functions that may have
+    any weak singularities there, by the tanh-sinh rule."""
+    nodes, to_end, factors = _rule_for(len(ends))
+    half = np.diff(ends)[:, None] / 2
+    points = np.where(nodes < 0, ends[:-1, None] + half * (1 + nodes), ends[1:, None] - half * to_end)
+    return points.ravel(), (half * factors).ravel()
+
+
 def double_exponential(count: int, span: float = 3.2) -> tuple[Array, Array, Array]:
     """Nodes (``count``,) in (-1, 1), their distances from 1, and weights of the tanh-sinh rule, truncated at +-``span``
     and normalised to be exact for constants."""

@@ -110,13 +110,15 @@ def slips_on(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> bool:
     return bool(slips.min() >= -_ROUNDING * slips.max())
 
 
-def dissipation(zone: StickZone[float], shape: Shape, gf: float = 0.0) -> Worn:
-    """Slip in the slip zones and at the contact's ends, and the energy dissipated in a whole cycle,
-    2 int f p |slip| dx, by a Gauss rule between all kinks of p; its error is the difference from a rule of fewer
+def dissipation(
+    zone: StickZone[float], shape: Shape, gf: float = 0.0, slip_at: Callable[[Array], Array] | None = None
+) -> Worn:
+    """Slip in the slip zones and at the contact's ends, by default :func:`slip`, and the energy dissipated in a whole
+    cycle, 2 int f p |slip| dx, by a Gauss rule between all kinks of p; its error is the difference from a rule of fewer
     points."""
     rules = [_rule(zone, shape, *counts) for counts in zip(_NODES, _FEWEST, strict=True)]
     points = np.concatenate([[-1.0], *(x for x, _ in rules), [1.0]])
-    slips = slip(points, zone, shape, gf)
+    slips = slip_at(points) if slip_at else slip(points, zone, shape, gf)
     worn = shape.pressure(points) * np.abs(slips)
     count = len(rules[0][0])
     work, other = 2 * rules[0][1] @ worn[1 : count + 1], 2 * rules[1][1] @ worn[count + 1 : -1]

@@ -7,8 +7,9 @@ import numpy as np
 
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.levels import Levels
-from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.mean_pressure import PressurePath, Ways
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.stress import Acting, Fields, Points, Shear, StressState, half_of, reached
 from partialslip.halfplane.turning import Turning
 from partialslip.halfplane.varying import Cycle

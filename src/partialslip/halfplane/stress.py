@@ -11,7 +11,11 @@ import numpy.typing as npt
 from partialslip.halfplane.cauchy import Cauchy
 from partialslip.halfplane.change import Change
 from partialslip.halfplane.contact import Contact, one_step_zone
+from partialslip.halfplane.layer import Acting as Transformed
+from partialslip.halfplane.layer import Along
 from partialslip.halfplane.loading import Loading
+from partialslip.halfplane.shape import rule_over
+from partialslip.halfplane.sheared_layers import InLayers
 from partialslip.halfplane.traction import half_range
 from partialslip.halfplane.tractions import sample
 from partialslip.halfplane.turning import Turned, Turning, half_cycle
@@ -88,11 +92,11 @@ class Shear:
 
 @dataclass(frozen=True)
 class TurnedShear:
-    """Shear traction ``share`` times that of ``change``, in which slip has reversed on the way, under the bulk
-    tension ``sigma`` (Pa)."""
+    """Shear traction ``share`` times that of ``change``, in which slip has reversed on the way, or of layers, under the
+    bulk tension ``sigma`` (Pa)."""
 
     contact: Contact
-    change: Turned
+    change: Turned | InLayers
     share: float
     sigma: float
 
@@ -118,6 +122,8 @@ class TurnedShear:
 
 def half_of(contact: Contact, change: Change | Turned, sigma: float, slope: float) -> Shear | TurnedShear:
     """Half of the shear of a ``change`` of a steady cycle, by the tension ``sigma`` and its ``slope``."""
+    if isinstance(change, InLayers):
+        return TurnedShear(contact, change, 1 / 2, sigma / 2)
     if isinstance(change, Loading):
         return Shear.of(contact, change, sigma, slope)
     assert isinstance(change, Turning | Turned)
@@ -126,7 +132,7 @@ def half_of(contact: Contact, change: Change | Turned, sigma: float, slope: floa
 
 def reached(contact: Contact, first: Loading | Turned, sigma: float, slope: float) -> Shear | TurnedShear:
     """Shear at a load point, ``first`` reached under the tension ``sigma`` and its ``slope``."""
-    if isinstance(first, Loading):
+    if isinstance(first, Loading) and not isinstance(first, InLayers):
         return Shear.of(contact, first, sigma, slope)
     return TurnedShear(contact, first, 1.0, sigma)
 
@@ -210,6 +216,7 @@ class Fields:
     f: float
     ends: tuple[StressState, ...]
     _known: dict[_Acting, tuple[Cauchy, int]] = field(default_factory=dict, repr=False, compare=False)
+    _transforms: dict[_Acting, Transformed] = field(default_factory=dict, repr=False, compare=False)
 
     def surface(self, x: Array) -> Array:
         """sigma_xx (Pa) along the surfaces at ``x`` (k,), m: (2, 2, k), by body (lower, upper) and load point."""
@@ -234,8 +241,10 @@ class Fields:
                 if isinstance(of, Contact):
                     made[of] = of.p0 * under_pressure(value, -at.depth / of.a * slope, at.side)
                 else:
-                    f = contact.f if contact.bound else self.f
-                    made[of] = of.stresses(f * contact.p0, value, slope, at)
+                    made[of] = of.stresses(self._unit(contact), value, slope, at)
+                if contact.layer:
+                    along: Along = "normal" if isinstance(of, Contact) else "shear"
+                    made[of] = made[of] + contact.layer.stresses(*at, self._seen_by_layers(of, contact), along)
             return made[of]
 
         result = np.empty((len(states), 3, len(at.x)))
@@ -246,6 +255,20 @@ class Fields:
             if state.sigma or state.slope:
                 found += under_tension(state.sigma + state.slope * at.x, state.slope, at.depth, at.side)
         return result
+
+    def _unit(self, contact: Contact) -> float:
+        """f p0, Pa."""
+        return (contact.f if contact.bound else self.f) * contact.p0
+
+    def _seen_by_layers(self, of: _Acting, contact: Contact) -> Transformed:
+        """Pressure or shear as layers see it."""
+        if of not in self._transforms:
+            inner = [] if isinstance(of, Contact) else of.breaks
+            x, weights = rule_over(np.unique(np.clip([-1.0, *contact.friction_bound.kinks, *inner, 1.0], -1, 1)))
+            on = contact.p0 * of.shape.pressure(x) if isinstance(of, Contact) else self._unit(contact) * of.traction(x)
+            assert contact.layer
+            self._transforms[of] = Transformed.of(contact.layer, contact.places(x), contact.a * weights * on)
+        return self._transforms[of]
 
     def _cauchy(self, of: _Acting) -> tuple[Cauchy, int]:
         """Cauchy integrals of p/p0 or q/(f p0), lengths scaled by a, and the row of these integrals."""

@@ -14,7 +14,8 @@ from partialslip.halfplane.gradual_path.half_cycle import HalfCycle, steady
 from partialslip.halfplane.gradual_path.slips import loop, resultants, slips
 from partialslip.halfplane.gradual_path.stage import Loads, LostError
 from partialslip.halfplane.gradual_path.tractions import Tractions
-from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.loading import Loading
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.slip import Worn
 from partialslip.halfplane.steady import UNEVEN_FRICTION
 from partialslip.result import StickZone

@@ -10,7 +10,6 @@ import numpy as np
 from partialslip.halfplane.contact import Contact
 from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.mean_pressure import Mean, PressurePath, PressureStage, Ways, common
-from partialslip.halfplane.slip import dissipation
 from partialslip.halfplane.steady import admissible
 from partialslip.result import EndSlip, Regime, Slip
 from partialslip.scene import Hertz, Scene
@@ -154,8 +153,7 @@ class Cycle:
         if not self.change:
             return None
         unit = self._unit(self.mean)
-        worn = dissipation(self.change.zone, self.change.seen, self.change.gf)
-        worn = worn.turned(self.change.mirror, self.change.turn)
+        worn = self.change.worn
         x, slips = self.mean.places(worn.x), unit * worn.slip
         low, high = common(self.first, self.second)
         inside = (x > low) & (x < high)

@@ -7,8 +7,9 @@ import numpy as np
 
 from partialslip.halfplane.answer import Answer, AtLoadPoints, without_cycle
 from partialslip.halfplane.levels import RATCHETS, STARTED
-from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.loading import Loading
 from partialslip.halfplane.mean_pressure import PressurePath, common
+from partialslip.halfplane.proportional import loading
 from partialslip.halfplane.states import varying, without_shear
 from partialslip.halfplane.varying import Cycle, steady_cycle
 from partialslip.result import PATH_DEPENDENT, SteadyState

@@ -43,7 +43,7 @@ def solve(
         ``added(places) -> (c, c)``: what unit shear forces on cells with ends at ``places`` (c + 1,), m, add to the
         mean displacements of the cells of half-planes along x, in A. Of bodies of like materials.
     """
-    clock = Clock(allowance)
+    clock, scene = Clock(allowance), scene.evenly_gripped
     scene.load.require_forces(scene.units)
     if not scene.material.alike:
         scene.require_no_moment("by march with bodies of different materials")

@@ -76,8 +76,9 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
     :func:`partialslip.march.method.solve`."""
 
     def __init__(self, scene: Scene, plan: Plan, start: State | None, clock: Clock, added: Added | None) -> None:
-        self.added, self.normal, path = added, NormalLoads.of(scene), load_path(scene, plan, start)
+        self.normal, path = NormalLoads.of(scene), load_path(scene, plan, start)
         frame = self.normal.frame
+        self.added = frame.layer.added if frame.layer else added
         super().__init__(scene, start, clock, path, (frame.centre, frame.a))
         self._ends = [*self.normal.ends, *self.normal.within(scene.profile.kinks)]
         self._inner = self.normal.within(finest(start.q.x)) if start else []
@@ -147,7 +148,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
             pressed=pressed,
             certificate=certificate(history, widths, f, p0) if history else {},
             change=last_cycle_change(history, widths, f, p0) if history else None,
-            model="two half-planes, exact pressure, cells of constant shear",
+            model=f"two {'strips' if frame.layer else 'half-planes'}, exact pressure, cells of constant shear",
             counts=counts,
             contact_ends=(normal.first.ends, normal.second.ends) if anew or frame.centre else None,
             notes=(f"m, n: {_SEVERAL}: those of the one with the most room are told",) if several else (),

@@ -266,7 +266,7 @@ def _right_grip(run: Run) -> Iterator[tuple[str, str]]:
 def first_knowing(run: Run, knows: Callable[[Result], bool]) -> Known | None:
     """Return the first result that ``knows`` a value and claims to hold, the answering one before all others; None if
     none does. Half-planes do not hold for finite bodies."""
-    best, finite = run.answering, run.scene.finite
+    best, finite = run.answering, run.scene.sized
     others = [
         name for name, result in run.results.items() if not (result.path_dependent or (finite and name in HALF_PLANES))
     ]

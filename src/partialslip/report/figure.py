@@ -86,7 +86,7 @@ def draw_run(axes: "Axes", run: Run) -> None:
 def in_order(run: Run) -> dict[str, Result]:
     """Return the results of ``run`` by method, first that of the reference; of finite bodies that which answers, as
     half-planes only stand for them."""
-    first = run.answering if run.scene.finite else run.reference or next(iter(run.results))
+    first = run.answering if run.scene.sized else run.reference or next(iter(run.results))
     return {first: run.results[first]} | run.results
 
 

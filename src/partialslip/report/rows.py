@@ -53,7 +53,7 @@ _DIGITS, _MOST = 7, 10  # display: decimals of values: the usual number, and the
 def beside_half_planes(run: Run, name: str) -> bool:
     """Return whether method ``name`` of ``run`` stands beside half-planes in the place of finite bodies: then it is
     half-planes that are off."""
-    return run.scene.finite and run.reference in HALF_PLANES and name not in HALF_PLANES
+    return run.scene.sized and run.reference in HALF_PLANES and name not in HALF_PLANES
 
 
 def shown_half_planes(run: Run) -> bool:
@@ -68,7 +68,7 @@ def scored(run: Run) -> bool:
 
 def whose(run: Run, name: str) -> str:
     """Return whose values those of method ``name`` of ``run`` are: half-planes are named where bodies are finite."""
-    return f"half-planes ({name})" if run.scene.finite and name in HALF_PLANES else name
+    return f"half-planes ({name})" if run.scene.sized and name in HALF_PLANES else name
 
 
 def error_headings(run: Run, name: str) -> list[str]:
@@ -175,7 +175,7 @@ def verdict_lines(run: Run) -> tuple[str, ...]:
         return (f"{found.text}: forced off: {', '.join(run.plan.missing)}; the errors measure these effects",)
     scene = run.scene
     reasons = {
-        "finite bodies": scene.finite,
+        "finite bodies": scene.sized,
         "unlike bodies": not scene.material.alike,
         _SLIDES: not run.comparisons and run[run.answering].regime == "sliding",
         "nothing to compare with": not run.comparisons,

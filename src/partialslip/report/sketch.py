@@ -19,6 +19,7 @@ _MIDDLE, _LINE = 235.0, 205.0  # display: x of the contact's middle, y of the co
 _HALF_PLANE = 185.0, 105.0  # display: half-width and height of a half-plane as drawn
 _LARGEST = 150.0, 105.0  # display: half-width and height of the largest finite body, holder included
 _GIVEN = 150.0, 74.0  # display: half-width and height of a body with a given mesh
+_INFINITE = 10.0  # display: width of an infinite body, in heights
 _SMALLEST = 24.0, 16.0  # display: half-width and height of the smallest part, however small it is
 _ROUND = 34.0  # display: height of the curved face of a body that stands for a half-plane
 _HATCH = 9.0  # display: distance and length of the strokes of a clamp
@@ -73,9 +74,10 @@ def _finite(scene: Scene, body: Body, way: float) -> list[str]:
     face = _face(scene, half, min(0.45 * height, _ROUND) if body.kind == "pad" else 0.0, way)
     back = _LINE + way * height
     shapes = [_polygon([*face, (_MIDDLE + half, back), (_MIDDLE - half, back)])]
+    width = body.width if body.width == "infinite" else scene.units.length(body.width or 0)
     texts = [
         f"{'lower' if way > 0 else 'upper'}: {body.kind}",
-        f"{scene.units.length(body.width or 0)} × {scene.units.length(body.height or 0)}",
+        f"{width} × {scene.units.length(body.height or 0)}",
     ]
     top = face[0][1]
     for half, height in behind:
@@ -98,7 +100,8 @@ def _drawn(scene: Scene, body: Body) -> list[tuple[float, float]]:
 def _parts(body: Body) -> list[tuple[float, float]]:
     """Return width and height, m, of a body and of its holder."""
     holder = [(body.holder.width, body.holder.height)] if body.holder else []
-    return [(body.width or 0.0, body.height or 0.0), *holder]
+    height = body.height or 0.0
+    return [(_INFINITE * height if body.width == "infinite" else body.span, height), *holder]
 
 
 def _given(body: Body, way: float) -> list[str]:

@@ -37,6 +37,17 @@ def under_shear(T: Complex, yT_z: Complex, side: Array) -> Array:
     return np.stack([side * (yT_z.imag - 2 * T.real), -side * yT_z.imag, T.imag + yT_z.real])
 
 
+def below_surface(at: Complex, mirrored: Complex, slope: Complex, z: Complex) -> Array:
+    """Stresses (3, k) of the lower body at ``z`` (k,), whose surface is free of tractions and is strained by u' and
+    turned by v': from the values ``at`` z of S = E' (u' + i v') (E of plane stress), continued to complex z, at the
+    ``mirrored`` places conj z, and its ``slope`` S'(z).
+
+        sigma_xx + sigma_yy = Re S(z),    sigma_yy - i sigma_xy = (S(z) - S(conj z) + (z - conj z) conj S'(z))/4
+    """
+    across = (at - mirrored + (z - z.conj()) * slope.conj()) / 4
+    return np.stack([at.real - across.real, across.real, -across.imag])
+
+
 def under_tension(sigma: Array, slope: float, depth: Array, side: Array) -> Array:
     """Stresses (3, k) due to the bulk tension ``sigma`` (k,), which varies along x by ``slope``, in the lower body:
     sigma_xx = s x is in equilibrium with sigma_xy = -s y."""

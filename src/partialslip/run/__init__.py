@@ -89,9 +89,9 @@ class Run(ByMethod[Result], Drawn):
         bodies fem, then equivalent half-planes; else the first. Of half-planes a result that claims to hold and tells
         its errors goes before one that does not."""
         best = reference(self.scene).method
-        wanted = (best, "equivalent") if self.scene.finite else (best,)
+        wanted = (best, "equivalent") if self.scene.sized else (best,)
         names = [name for name in (*wanted, *self.results) if name in self.results]
-        if self.scene.finite:
+        if self.scene.sized:
             return names[0]
         telling = (name for name in names if name == best or not self.results[name].path_dependent)
         return next((name for name in telling if estimated(self.results[name], name)), names[0])
@@ -194,7 +194,9 @@ def default_methods(scene: Scene) -> tuple[str, ...]:
         return ("fem",)
     if scene.bodies.equivalent is not None:
         return ("exact", "equivalent")
-    if scene.finite:
+    if any(body.width == "infinite" for _, body in scene.bodies):
+        return tuple(dict.fromkeys((reference(scene).method, "march")))
+    if scene.sized:
         return ("exact" if scene.load.in_phase and has_closed_form(reduced(scene)) else "march", "fem")
     return (reference(scene).method, "fem")
 
@@ -281,7 +283,7 @@ def run(
         effects.accept(result.regime)
     # no bars for finite and dissimilar bodies or for a fixed element size: there is no reference; none for effects
     # forced off: the error measures the effect
-    judged = not scene.finite and scene.material.alike and scene.fem.size is None and not effects.missing
+    judged = not scene.sized and scene.material.alike and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     accuracy = min(float(reached or scene.fem.accuracy), LARGEST)
     return compared(scene, effects, results, accuracy if judged else None)
@@ -291,7 +293,7 @@ def _finds_stresses(scene: Scene, method: str, before: Mapping[str, Result]) -> 
     """Return whether ``method`` is to find the stresses of ``scene``, after the results ``before``."""
     if scene.effects.subsurface is False:
         return False
-    if scene.finite or not scene.material.alike:
+    if scene.sized or not scene.material.alike:
         return method == "fem"
     return method in ("exact", "march") or not any(result.surface for result in before.values())
 

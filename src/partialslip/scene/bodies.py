@@ -1,13 +1,17 @@
 """Finite bodies: shapes or mesh files, and supports."""
 
+import math
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import msgspec
 
 from partialslip.scene.table import Positive, Table
 from partialslip.tools.errors import InputError
 
+# limit: width of strips, in heights, from which their sides hardly count: the slowest of the states that decay along a
+# strip does so as exp(-2.1 x/h), and comes back from either side
+_LONG = 6.0
 _SLENDEREST = 1e-4  # limit: smallest ratio of height to width, or of width to height
 
 
@@ -41,10 +45,10 @@ class Body(Table, frozen=True, kw_only=True):
 
     ``kind``: a ``block`` is rectangular; the face of a ``pad`` has the true shape of the profile, a circular arc for
     hertz. At most one body is a pad. ``width`` and ``height`` (m; the height of a pad is that in the middle) are the
-    size of the body, behind which a ``holder`` may be bonded. Alternatively ``mesh`` is the path of a mesh file with
-    lengths in units of ``unit`` (m). Of a file with more bodies, ``body`` is the part, set or physical group (or its
-    number) that is this one; ``groups`` are the names in the file of ``contact``, ``back``, ``left``, ``right`` and
-    ``face``.
+    size of the body, behind which a ``holder`` may be bonded. The width of two equal strips may be ``infinite``, but
+    not for fem. Alternatively ``mesh`` is the path of a mesh file with lengths in units of ``unit`` (m). Of a file with
+    more bodies, ``body`` is the part, set or physical group (or its number) that is this one; ``groups`` are the names
+    in the file of ``contact``, ``back``, ``left``, ``right`` and ``face``.
 
     ``support`` holds the body, or its holder, and carries P and Q. ``clamped``: the back is fixed to a rigid plate that
     does not rotate. ``pivot``: this plate turns on a pin on the axis x = 0, at the distance ``pivot_height`` (m) from
@@ -58,7 +62,7 @@ class Body(Table, frozen=True, kw_only=True):
     """
 
     kind: Literal["block", "pad"] = "block"
-    width: Positive | None = None
+    width: Positive | Literal["infinite"] | None = None
     height: Positive | None = None
     holder: Holder | None = None
     mesh: Annotated[str, msgspec.Meta(min_length=1)] | None = None
@@ -69,6 +73,13 @@ class Body(Table, frozen=True, kw_only=True):
     pivot_height: Annotated[float, msgspec.Meta(ge=0)] | None = None
     pulled: bool = False
     right_grip: Annotated[float, msgspec.Meta(ge=0, le=1)] | Literal["stiffness"] | None = None
+
+    @property
+    def span(self) -> float:
+        """Width, m: infinite of an infinite strip, NaN of a mesh file."""
+        if self.width is None:
+            return math.nan
+        return self.width if isinstance(self.width, (int, float)) else math.inf
 
     @property
     def gripped(self) -> bool:
@@ -102,13 +113,27 @@ class Body(Table, frozen=True, kw_only=True):
         if self.pivot_height is not None and self.support != "pivot":
             given = f"{name}.pivot_height = {self.pivot_height}"
             raise InputError(f"{given}: must be given only with support 'pivot', not {self.support!r}")
-        tables = {name: (self.width, self.height)}
+        if self.width == "infinite" and self.support != "roller":
+            raise InputError(f"{name}.width = 'infinite': must be a number, or support = 'roller'")
+        tables = {name: (None if self.width == "infinite" else self.width, self.height)}
         if self.holder:
             tables[f"{name}.holder"] = (self.holder.width, self.holder.height)
         for table, (width, height) in tables.items():
             if width and height and not _SLENDEREST <= height / width <= 1 / _SLENDEREST:
                 times = f"must be {_SLENDEREST:g} to {1 / _SLENDEREST:g} times the width, {width} m"
                 raise InputError(f"{table}.height = {height}: {times}")
+
+
+class Strips(NamedTuple):
+    """Two equal long blocks on rollers: their ``height``, m; ``held``, 1/width of the lower and the upper block, 1/m,
+    or zero if not both sides are held along x; and the tension of the lower block, Pa per N/m of Q, that its grips make
+    of Q because they do not carry half of it each (``skew``). ``width`` is that of the shorter block, m.
+    """
+
+    height: float
+    width: float
+    held: tuple[float, float]
+    skew: float
 
 
 class Bodies(Table, frozen=True, kw_only=True):
@@ -155,6 +180,27 @@ class Bodies(Table, frozen=True, kw_only=True):
         """Raise InputError if a body pivots, which the ``purpose`` (in words) does not know."""
         if self.pivots:
             raise InputError(f"{self.pivots}.support = 'pivot': must be another {purpose}")
+
+    def require_widths(self, purpose: str) -> None:
+        """Raise InputError if a body is infinite, which the ``purpose`` (in words) does not know."""
+        for name, body in self:
+            if body.width == "infinite":
+                raise InputError(f"{name}.width = 'infinite': must be a number {purpose}, about 40 times the height")
+
+    @property
+    def strips(self) -> Strips | None:
+        """The bodies, if they are two equal long blocks on rollers; None otherwise."""
+        upper, lower = self.upper, self.lower
+        if not (upper and lower and upper.height == lower.height and upper.height):
+            return None
+        if any(body.kind != "block" or body.holder or body.support != "roller" for body in (upper, lower)):
+            return None
+        width = min(upper.span, lower.span)
+        if not width >= _LONG * upper.height:
+            return None
+        loose = lower.pulled and not lower.gripped
+        held = 0.0 if loose else 1 / lower.span, 1 / upper.span
+        return Strips(upper.height, width, held, (lower.right_share - 0.5) / upper.height if loose else 0.0)
 
     @property
     def pad(self) -> str | None:

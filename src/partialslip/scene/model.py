@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from partialslip.scene.bodies import Bodies
+from partialslip.scene.bodies import Bodies, Strips
 from partialslip.scene.loads import Load
 from partialslip.scene.materials import Material
 from partialslip.scene.profiles import FlatRounded, Hertz, Profile
@@ -176,7 +176,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
             raise InputError(f"profile.crown = {self.profile.crown}: must be left out with a pad, {self.bodies.pad}")
         for name, body in self.bodies:
             if body.kind == "pad" and body.width is not None and body.height is not None:
-                self._check_pad(name, body.width, body.height)
+                self._check_pad(name, body.span, body.height)
 
     def _check_driven(self, displacement: str) -> None:
         """Raise InputError if plates cannot drive the bodies."""
@@ -290,6 +290,16 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         """Whether a body is finite."""
         return self.bodies != Bodies()
 
+    @property
+    def strips(self) -> Strips | None:
+        """The bodies, if they are two equal long strips of one material, which exact and march solve as such."""
+        return self.bodies.strips if self.material.alike else None
+
+    @property
+    def sized(self) -> bool:
+        """Whether a body has a size that exact and march do not know: in its place they solve half-planes."""
+        return self.finite and not self.strips
+
     def at_right_grip(self, Q: npt.ArrayLike, sigma: npt.ArrayLike) -> Array:
         """Tension on the right side of a ``pulled`` body, Pa: the bulk tension ``sigma`` (Pa), and what the grip there
         carries of the shear force ``Q`` (N/m) by a given share, of any shape."""
@@ -310,6 +320,21 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         return msgspec.structs.replace(
             self,
             load=msgspec.structs.replace(self.load, sigma=tuple(sigma.tolist())),
+            bodies=msgspec.structs.replace(self.bodies, lower=lower),
+        )
+
+    @property
+    def evenly_gripped(self) -> "Scene":
+        """The scene of strips whose grips carry half of Q each, with the tension that other shares add as sigma; a
+        scene without strips as it is."""
+        if not self.strips or not self.strips.skew:
+            return self
+        sigma = tuple(sigma + self.strips.skew * Q for Q, sigma in self.load.points)
+        assert self.bodies.lower
+        lower = msgspec.structs.replace(self.bodies.lower, right_grip=0.5)
+        return msgspec.structs.replace(
+            self,
+            load=msgspec.structs.replace(self.load, sigma=sigma),
             bodies=msgspec.structs.replace(self.bodies, lower=lower),
         )
 

@@ -56,7 +56,7 @@ def has_ladder(case: Case) -> bool:
     """Return whether ``case`` can be solved on a ladder of uniform meshes and compared with the exact solution."""
     scene = case.scene
     usual = case.reference == "exact" and not case.meshes and not scene.meshed and scene.fem.size is None
-    return usual and "fem" in case.methods and scene.load.in_phase and not scene.finite
+    return usual and "fem" in case.methods and scene.load.in_phase and not scene.sized
 
 
 def climb(scene: Scene, exact: Result) -> tuple[Convergence, ...]:

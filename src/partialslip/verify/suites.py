@@ -71,7 +71,7 @@ def book() -> list[Case]:
     for number, problem in read_problems().items():
         methods = tuple(dict.fromkeys(way.method for way in derivations(problem)))
         scene, unlike = problem.scene, not problem.scene.material.alike
-        reference = "" if scene.finite else next(known for known in REFERENCES if known in methods)
+        reference = "" if scene.sized else next(known for known in REFERENCES if known in methods)
         if unlike:  # the load steps of coupled bodies are as many as a loose accuracy needs
             scene = scene.replace(fem={"accuracy": 1e-3})
         cases.append(

@@ -118,10 +118,10 @@ def outlined(
     _require_exportable(scene)
     a, least, farthest = _half_widths(scene)
     size, fine = size * (least / a), (size / 10 if fine is None else fine) * (least / a)
-    limits = [_FILLS / 2 * body.width / a for _, body in scene.bodies if body.width]
+    limits = [_FILLS / 2 * body.span / a for _, body in scene.bodies if body.width]
     reach = min([_REACH * (farthest / a), *limits])
     if reach * a <= farthest:
-        name = min(((body.width or 0.0, name) for name, body in scene.bodies))[1]
+        name = min(((body.span, name) for name, body in scene.bodies))[1]
         raise InputError(f"{name}.width: must be wider than the contact, which fills more than {_FILLS:.0%} of it")
     kinks = [kink / a for kink in scene.profile.kinks if abs(kink) < reach * a]
     points = dict.fromkeys([*ends, *kinks], fine)
@@ -184,6 +184,7 @@ def _require_exportable(scene: Scene) -> None:
     if any(scene.load.sigma_slope):
         raise InputError(f"load.sigma_slope = {scene.load.shown('sigma_slope')}: must be 0 or left out to export")
     scene.bodies.require_no_pin("to export")
+    scene.bodies.require_widths("to export")
     if scene.bodies.lower and (share := scene.bodies.lower.right_grip):
         raise InputError(f"bodies.lower.right_grip = {share!r}: must be 0 or left out to export")
     if scene.meshed:
@@ -213,7 +214,7 @@ def _half_widths(scene: Scene) -> tuple[float, float, float]:
 
 def _contact_ends(scene: Scene, pressing: Pressing) -> tuple[float, float]:
     """Ends of the contact under P and M, m; for finite or dissimilar bodies nearly, without friction."""
-    if scene.material.alike and not scene.finite:
+    if scene.material.alike and not scene.sized:
         return contact(scene, pressing).ends
     from partialslip.run import run
 

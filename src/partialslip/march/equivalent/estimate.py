@@ -12,7 +12,8 @@ import numpy as np
 
 from partialslip.halfplane import Contact, contact, contact_of
 from partialslip.halfplane.contact import rubbing, tilted_contact
-from partialslip.halfplane.loading import Loading, loading
+from partialslip.halfplane.loading import Loading
+from partialslip.halfplane.proportional import loading
 from partialslip.march.equivalent.data import HalfPlaneData, chebyshev_coefficients, nodes
 from partialslip.result.rig import Rig
 from partialslip.scene import Scene

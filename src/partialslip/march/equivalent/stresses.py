@@ -19,7 +19,7 @@ from numpy.polynomial import polynomial
 
 from partialslip.march.equivalent.data import Moments, moments_of
 from partialslip.result import Result, StressAt, SurfaceStress
-from partialslip.result.below import under_tension
+from partialslip.result.below import below_surface, under_tension
 from partialslip.result.phases import Phases
 from partialslip.result.rig import Rig
 from partialslip.scene import Scene
@@ -118,7 +118,6 @@ def rests(scene: Scene, rig: Rig, moments: Moments) -> Complex:
 
 def _below(coefficients: Complex, z: Complex) -> Array:
     """Stresses (3, k) of the lower body at ``z`` (k,), in reaches, from the ``coefficients`` of S."""
-    at, mirrored = (polynomial.polyval(each, coefficients) for each in (z, z.conj()))
-    slope = polynomial.polyval(z, polynomial.polyder(coefficients))
-    across = (at - mirrored + (z - z.conj()) * slope.conj()) / 4
-    return np.stack([at.real - across.real, across.real, -across.imag])
+    at, mirrored = (np.asarray(polynomial.polyval(each, coefficients), complex) for each in (z, z.conj()))
+    slope = np.asarray(polynomial.polyval(z, polynomial.polyder(coefficients)), complex)
+    return below_surface(at, mirrored, slope, z)

@@ -42,10 +42,10 @@ def reference(scene: Scene) -> Reference:
 
     Similar half-planes: exact where the steady state is known exactly, march elsewhere. Where slip reverses between the
     load points the closed form, which goes there in one step, does not hold; exact then follows gradual loads. Where it
-    cannot, or where the pressure varies, neither exact nor march is a reference for m, n and the shear. Finite bodies
-    and dissimilar materials: fem.
+    cannot, or where the pressure varies, neither exact nor march is a reference for m, n and the shear. Two equal
+    strips are like half-planes. Other finite bodies and dissimilar materials: fem.
     """
-    if scene.finite or not scene.material.alike:
+    if scene.sized or not scene.material.alike:
         return Reference("fem")
     own = reduced(scene)
     if not own.load.in_phase:
@@ -71,7 +71,7 @@ def reference_among(scene: Scene, results: Mapping[str, Result] | Mapping[str, R
     if ALL_EFFECTS in results:
         return ALL_EFFECTS
     # what is known exactly of the scene, which may take seconds, decides nothing where there is one result
-    judged = len(results) > 1 and not scene.finite and scene.material.alike
+    judged = len(results) > 1 and not scene.sized and scene.material.alike
     first = (reference(scene).method,) if judged else ()
     names = [name for name in (*first, *METHODS) if name in results]
     return next((name for name in names if not judged or estimated(results[name], name)), next(iter(names), None))

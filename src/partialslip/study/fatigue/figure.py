@@ -91,7 +91,7 @@ def _outline(axes: "Axes", found: Assessment) -> None:
     left, right = (end / a for end in found.result.ends[1])
     axes.plot([left, right], [0, 0], color="black", lw=2.4, solid_capstyle="butt")
     for way, body in ((-1.0, found.scene.bodies.lower), (1.0, found.scene.bodies.upper)):
-        half = 1e3 if body is None or body.width is None else body.width / 2 / a
+        half = 1e3 if body is None or body.width is None else min(body.span / 2 / a, 1e3)
         deep = 1e3 if body is None or body.height is None else body.height / a
         x = np.linspace(-min(half, 2 * _WIDE), min(half, 2 * _WIDE), 201)
         face = found.scene.profile.face_at(a * x) / a if body is not None and body.kind == "pad" else 0 * x

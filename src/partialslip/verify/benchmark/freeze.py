@@ -49,7 +49,7 @@ def derivations(problem: Problem) -> tuple[Derivation, ...]:
     scene = problem.scene
     march = Derivation("march", "march", {"fem.accuracy": _FINE})
     fem = Derivation("fem", "fem", {"fem.accuracy": _FINE})
-    if scene.finite:
+    if scene.sized:
         # p changes on the way: slip in one step takes more work, 6e-4 in PS-24
         fine = {"fem.accuracy": _FINE / 100, "load.steps": _STEPS[0]}
         return (

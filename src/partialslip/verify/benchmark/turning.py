@@ -32,7 +32,7 @@ class _Half(NamedTuple):
 def slip_reverses(scene: Scene) -> bool:
     """Whether slip reverses between the load points of similar half-planes at constant pressure."""
     load = scene.load
-    if scene.finite or not scene.mirrored or scene.presses_anew or not load.in_phase:
+    if scene.sized or not scene.mirrored or scene.presses_anew or not load.in_phase:
         return False
     if scene.only_pressed or scene.free or scene.slides or not may_turn_round(scene):
         return False

@@ -40,7 +40,7 @@ class Own:
         """Solve ``scene``; None if the method does not offer it."""
         if self.sizes:
             return self.rungs[-1].solve(scene)
-        if scene.finite and self.method in ("exact", "march"):  # half-planes
+        if scene.sized and self.method in ("exact", "march"):  # half-planes
             return None
         try:
             result = run(scene.replace(fem=dict(self.fem)), self.method)[self.method]
