@@ -136,4 +136,6 @@ def _samples(problem: Problem, given: dict[str, npt.ArrayLike | None], kind: Kin
 
 def __getattr__(name: str) -> Any:
     """Other public names of the benchmark (:mod:`partialslip.verify.benchmark`)."""
+    if name not in benchmark.__all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(benchmark, name)

@@ -81,3 +81,6 @@ def test_without_friction_pressure_is_enough():
 
 def test_other_names_are_those_of_the_benchmark():
     assert partialslip.benchmark.read_submission is benchmark.read_submission
+    with pytest.raises(AttributeError, match=r"module 'partialslip\.benchmark' has no attribute 'other'"):
+        partialslip.benchmark.other  # noqa: B018
+    assert not hasattr(partialslip.benchmark, "__path__")

@@ -25,6 +25,11 @@ class Lazy(ModuleType):
         return value
 
 
+def homes_of(names: Mapping[str, str]) -> dict[str, str]:
+    """The module of each name, from the ``names`` of each module, separated by blanks."""
+    return {name: module for module, some in names.items() for name in some.split()}
+
+
 def make_lazy(package: str, homes: Mapping[str, str], kind: type[Lazy] = Lazy) -> None:
     """Let the ``package`` import each name of ``homes``, from the module named there, when it is used first."""
     module = sys.modules[package]

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from partialslip.tools.lazy import make_lazy
+from partialslip.tools.lazy import homes_of, make_lazy
 
 if TYPE_CHECKING:
     from partialslip.run.judge import Bar as Bar
@@ -24,24 +24,13 @@ if TYPE_CHECKING:
     from partialslip.verify.suites import stress_suite as stress_suite
     from partialslip.verify.suites import suite as suite
 
-_HOMES = {
-    "Case": "case",
-    "CaseVerdict": "case",
-    "FAMILIES": "hard_cases.catalogue",
-    "Found": "case",
-    "REQUIREMENTS": "case",
-    "Verification": "driver",
-    "hard_cases": "hard_cases.catalogue",
-    "judge_case": "case",
-    "number_of": "case",
-    "requirement_of": "case",
-    "run_case": "case",
-    "shipped": "hard_cases.catalogue",
-    "solve_case": "case",
-    "stress_case": "suites",
-    "stress_suite": "suites",
-    "suite": "suites",
-    "verify_suite": "driver",
-}
+_HOMES = homes_of(
+    {
+        "case": "Case CaseVerdict Found REQUIREMENTS judge_case number_of requirement_of run_case solve_case",
+        "driver": "Verification verify_suite",
+        "hard_cases.catalogue": "FAMILIES hard_cases shipped",
+        "suites": "stress_case stress_suite suite",
+    }
+)
 __all__ = [*_HOMES]
 make_lazy(__name__, _HOMES)

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from partialslip.tools.lazy import make_lazy
+from partialslip.tools.lazy import homes_of, make_lazy
 
 if TYPE_CHECKING:
     from partialslip.verify.benchmark.book import book_page as book_page
@@ -32,33 +32,17 @@ if TYPE_CHECKING:
     from partialslip.verify.benchmark.submission import Submission as Submission
     from partialslip.verify.benchmark.submission import write_submission as write_submission
 
-_HOMES = {
-    "Answer": "submission",
-    "Board": "scoreboard",
-    "CLIMB_HEADS": "ladder",
-    "Climb": "ladder",
-    "Graded": "grade",
-    "Mark": "grade",
-    "Meta": "submission",
-    "Problem": "problem",
-    "Rung": "submission",
-    "Source": "problem",
-    "Standing": "scoreboard",
-    "Submission": "submission",
-    "Target": "problem",
-    "badge": "scoreboard",
-    "badge_names": "scoreboard",
-    "book_page": "book",
-    "book_zip": "book",
-    "climb_rows": "ladder",
-    "climbs": "ladder",
-    "graded": "grade",
-    "handed_in": "handin",
-    "read_problems": "problem",
-    "read_submission": "folder",
-    "scoreboard": "scoreboard",
-    "standing": "scoreboard",
-    "write_submission": "submission",
-}
+_HOMES = homes_of(
+    {
+        "book": "book_page book_zip",
+        "folder": "read_submission",
+        "grade": "Graded Mark graded",
+        "handin": "handed_in",
+        "ladder": "CLIMB_HEADS Climb climb_rows climbs",
+        "problem": "Problem Source Target read_problems",
+        "scoreboard": "Board Standing badge badge_names scoreboard standing",
+        "submission": "Answer Meta Rung Submission write_submission",
+    }
+)
 __all__ = [*_HOMES]
 make_lazy(__name__, _HOMES)
