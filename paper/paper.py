@@ -10,7 +10,7 @@ from statistics import median
 
 from partialslip.scene.reading import load_scene
 from partialslip.verify.benchmark.folder import examined
-from partialslip.verify.benchmark.grade import HEADLINE
+from partialslip.verify.benchmark.gold import GROUPS
 from partialslip.verify.benchmark.problem import EDITION, read_problems
 from partialslip.verify.benchmark.submission import Submission
 
@@ -40,11 +40,11 @@ def paper() -> str:
 def numbers() -> dict[str, str]:
     """Texts of the numbers by name."""
     targets = [target for problem in PROBLEMS.values() for target in problem.targets.values()]
-    headline = [target.uncertainty for target in targets if target.group in HEADLINE]
+    main_targets = [target.uncertainty for target in targets if target.group in GROUPS]
     sure = [
         number
         for number, problem in PROBLEMS.items()
-        if all(target.uncertainty <= EXACT for target in problem.targets.values() if target.group in HEADLINE)
+        if all(target.uncertainty <= EXACT for target in problem.targets.values() if target.group in GROUPS)
     ]
     answers = [_answers(folder) for folder in sorted((ROOT / "benchmarks" / "submissions").iterdir())]
     own = {each.meta.code.removeprefix("partialslip "): each for each in answers}
@@ -66,7 +66,7 @@ def numbers() -> dict[str, str]:
         "exact": str(sum(target.uncertainty <= EXACT for target in targets)),
         "exact_to": _short(EXACT),
         "exact_problems": str(len(sure)),
-        "headline_unsure": _short(max(headline)),
+        "main_unsure": _short(max(main_targets)),
         "unsure": _short(max(target.uncertainty for target in targets)),
         "columns": str(len(others)),
         "codes": ", ".join(f"{each.meta.code} {each.meta.version}" for each in others),

@@ -13,8 +13,8 @@ import pytest
 from partialslip.cli import main
 from partialslip.verify.benchmark import read_problems
 from partialslip.verify.benchmark.data import ProblemData, data_files, schema
-from partialslip.verify.benchmark.gold import gold_files
-from partialslip.verify.benchmark.grade import HEADLINE, LIMITS
+from partialslip.verify.benchmark.gold import GROUPS, gold_files
+from partialslip.verify.benchmark.grade import LIMITS
 from partialslip.verify.benchmark.problem import EDITION, read_frozen
 
 PROBLEMS = read_problems()
@@ -106,7 +106,7 @@ def csvdiff(gold, comparison, row):
 @pytest.mark.parametrize("number", PROBLEMS)
 @pytest.mark.parametrize("grade", ["B", "D"])
 def test_gold_accepts_what_is_within_the_tolerance_and_nothing_else(number, grade):
-    targets = {key: target for key, target in PROBLEMS[number].targets.items() if target.group in HEADLINE}
+    targets = {key: target for key, target in PROBLEMS[number].targets.items() if target.group in GROUPS}
     gold = json.loads(gold_files(PROBLEMS[number], "json", grade)[f"{number}.json"])["gold"]
     made = gold_files(PROBLEMS[number], "csvdiff", grade)
     files = made[f"{number}.csv"], made[f"{number}.cmp"]

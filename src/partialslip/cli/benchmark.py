@@ -108,8 +108,9 @@ def add(commands: Commands) -> None:
     data.set_defaults(command=_data)
 
     gold = parts.add_parser("gold", help="write gold files for a regression harness",
-                            description="Write the headline targets of a problem with tolerances: a test for pytest, "
-                            "a row of values with the comparison file of MOOSE's CSVDiff, or JSON.",
+                            description="Write a problem's targets of contact, stick zone and tractions with "
+                            "tolerances: a test for pytest, a row of values with the comparison file of MOOSE's "
+                            "CSVDiff, or JSON.",
                             examples=["partialslip benchmark gold PS-02 --for pytest",
                                       "partialslip benchmark gold PS-02 --for csvdiff --grade B"])  # fmt: skip
     gold.add_argument("problem", metavar="PROBLEM", help="number of the problem")

@@ -36,7 +36,7 @@ PS-01.csv: its targets alone. targets.csv: those of all problems. All values are
   value, unit  the target
   scale        the size to which an error is relative, in the same unit: a, p0, f p0, 2 f p0, or the value itself
   uncertainty  the largest error that the value may have, in the scale
-  group        contact, stick and tractions (these three make a grade), levels, slip, stress
+  group        contact, stick (zone), tractions, levels (shear at a load point), slip, stress
   known        how the value is known, and how far other methods are off, in the scale
 
 Licence: CC-BY-4.0, {licence}

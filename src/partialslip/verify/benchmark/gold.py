@@ -1,4 +1,4 @@
-"""Gold files: headline targets with tolerances, for the regression harness of a code.
+"""Gold files: targets of contact, stick zone and tractions with tolerances, for the regression harness of a code.
 
 A tolerance is absolute, (limit of a grade + uncertainty of the target) x its scale.
 """
@@ -8,8 +8,10 @@ from typing import NamedTuple
 
 from partialslip.tools.errors import InputError
 from partialslip.tools.output.files import csv_text, json_text
-from partialslip.verify.benchmark.grade import HEADLINE, LIMITS
+from partialslip.verify.benchmark.grade import LIMITS
 from partialslip.verify.benchmark.problem import EDITION, Problem
+
+GROUPS = ("contact", "stick", "tractions")  # fixed: groups of the targets that gold files hold
 
 
 class Gold(NamedTuple):
@@ -51,7 +53,7 @@ def gold_files(problem: Problem, form: str, grade: str = "C") -> dict[str, str]:
     gold = {
         key: Gold(target.value, (LIMITS[grade] + target.uncertainty) * target.scale, target.unit)
         for key, target in problem.targets.items()
-        if target.group in HEADLINE
+        if target.group in GROUPS
     }
     return FORMS[form](problem, gold, _ABOUT.format(edition=EDITION, grade=grade))
 
