@@ -36,7 +36,7 @@ def test_a_function_is_not_hidden_by_its_module(name):
     assert done(code).stdout.split() == ["True", "True"]
 
 
-@pytest.mark.parametrize("old", ["fatigue", "benchmark", "judge.verdict", "run.judge.means", "errors"])
+@pytest.mark.parametrize("old", ["fatigue", "gradual", "judge.verdict", "run.judge.means", "errors"])
 def test_module_names_of_version_1_0_warn_and_lead_to_the_same_module(old):
     new = f"partialslip.{new_name(old)}"
     code = f"""import sys, {new}
@@ -66,6 +66,10 @@ def test_other_names():
 
 
 HEAVY = "gmsh skfem meshio matplotlib pandas rich cvxopt jinja2"
+GRADE = """import numpy as np
+from partialslip.benchmark import grade
+x = np.linspace(-1.1, 1.1, 121)
+grade("PS-01", 2.066976e-4 * x, 418.1044e6 * np.sqrt(np.maximum(1 - x**2, 0)))"""
 RUN = "import partialslip as p; s = p.load_scene('hertz-shear', ['fem.size=0.2', 'fem.factor=superlu']); p.run(s, {})"
 IMPORTED = {  # which of some packages a piece of code imports
     "import partialslip": ("numpy scipy msgspec " + HEAVY, ""),
@@ -74,6 +78,7 @@ IMPORTED = {  # which of some packages a piece of code imports
         "gmsh skfem meshio matplotlib", ""
     ),
     "import partialslip; partialslip.load_scene('hertz-shear')._repr_html_()": ("jinja2 matplotlib pandas", "jinja2"),
+    GRADE: (f"{HEAVY} scipy.optimize scipy.interpolate partialslip_meshes partialslip_fem", ""),
     RUN.format(["exact", "march"]): (HEAVY, ""),
     RUN.format(["fem"]): (HEAVY, "skfem"),  # gmsh runs in a separate process
 }  # fmt: skip

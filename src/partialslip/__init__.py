@@ -33,11 +33,10 @@ Half-planes alone, for many loads at once: partialslip.halfplane.
 """
 
 import importlib
-import sys
 from importlib.util import find_spec
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from partialslip.tools.lazy import Lazy, make_lazy
 from partialslip.tools.moved import keep_old_names
 
 if TYPE_CHECKING:
@@ -111,30 +110,24 @@ __all__ = [*_HOMES]
 _SHOWN = [*__all__, "__version__", "halfplane"]
 
 
-class _Package(ModuleType):
-    """This package. A function keeps its name when the module of the same name is imported (``run``, ``plan``)."""
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if not (name in _HOMES and isinstance(value, ModuleType)):
-            super().__setattr__(name, value)
+class _Package(Lazy):
+    """This package: also its version, and its folders, which are imported when they are used first."""
 
     def __dir__(self) -> list[str]:
         return sorted(_SHOWN)
 
     def __getattr__(self, name: str) -> Any:
-        if name in _HOMES:
-            value = getattr(importlib.import_module(f"{self.__name__}.{_HOMES[name]}"), name)
-        elif name == "__version__":
+        if name == "__version__":
             from importlib.metadata import version
 
-            value = version(self.__name__)
-        elif not name.startswith("_") and find_spec(f"{self.__name__}.{name}"):
+            value: Any = version(self.__name__)
+        elif name not in _HOMES and not name.startswith("_") and find_spec(f"{self.__name__}.{name}"):
             value = importlib.import_module(f"{self.__name__}.{name}")
         else:
-            raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
+            return super().__getattr__(name)
         setattr(self, name, value)
         return value
 
 
-sys.modules[__name__].__class__ = _Package
+make_lazy(__name__, _HOMES, _Package)
 keep_old_names()

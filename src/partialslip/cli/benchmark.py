@@ -1,6 +1,7 @@
 """partialslip benchmark: numbered problems with frozen targets, for contact codes."""
 
 import argparse
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,7 +36,8 @@ def add(commands: Commands) -> None:
         "benchmark",
         help="numbered problems with frozen targets, for contact codes",
         description="List the problems of the benchmark, answer them with a method of partialslip, score the answers "
-        "of a code, check them before they are handed in, or write the book.",
+        "of a code, check them before they are handed in, write the book, the targets as a data set, or gold "
+        "files.",
         examples=[
             "partialslip benchmark list",
             "partialslip benchmark score my-answers",
@@ -95,6 +97,27 @@ def add(commands: Commands) -> None:
                                         "partialslip benchmark check benchmarks/submissions/my-code"])  # fmt: skip
     checks.add_argument("folder", metavar="FOLDER", help="folder with the answers")
     checks.set_defaults(command=_check_submission)
+
+    data = parts.add_parser("data", help="write the targets as a data set",
+                            description="Write the targets of all problems as a data set that stands alone: JSON and "
+                            "CSV with units, uncertainty and provenance, JSON Schema, licence (CC-BY-4.0), citation, "
+                            "RO-Crate.",
+                            examples=["partialslip benchmark data --out targets",
+                                      "partialslip benchmark data --out targets.zip"])  # fmt: skip
+    data.add_argument("-o", "--out", metavar="PATH", required=True, help="folder, or a file that ends in .zip")
+    data.set_defaults(command=_data)
+
+    gold = parts.add_parser("gold", help="write gold files for a regression harness",
+                            description="Write a problem's targets of contact, stick zone and tractions with "
+                            "tolerances: a test for pytest, a row of values with the comparison file of MOOSE's "
+                            "CSVDiff, or JSON.",
+                            examples=["partialslip benchmark gold PS-02 --for pytest",
+                                      "partialslip benchmark gold PS-02 --for csvdiff --grade B"])  # fmt: skip
+    gold.add_argument("problem", metavar="PROBLEM", help="number of the problem")
+    gold.add_argument("--for", dest="form", metavar="HARNESS", required=True, help="pytest, csvdiff or json")
+    gold.add_argument("--grade", default="C", metavar="GRADE", help="whose limit is the tolerance: A to D (default: C)")
+    gold.add_argument("-o", "--out", metavar="DIR", default="gold", help="folder for the files (default: gold)")
+    gold.set_defaults(command=_gold)
 
     builds = parts.add_parser("build", help="write the book",
                               description="Write the book of problems, book.html and book.pdf, a zip of plain data, "
@@ -238,6 +261,38 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> in
     if lacking:
         console.print(f"not judged: {', '.join(lacking)}", markup=False, soft_wrap=True)
     return UNJUDGED if lacking else 0
+
+
+def _data(options: argparse.Namespace) -> int:
+    from datetime import date
+
+    from partialslip.cli.consoles import output
+    from partialslip.tools.output.files import write_files, zipped
+    from partialslip.verify.benchmark import read_problems
+    from partialslip.verify.benchmark.data import data_files
+
+    files, path = data_files(read_problems(), date.today()), Path(options.out)
+    if path.suffix == ".zip":
+        write_files(path.parent, {path.name: lambda made: made.write_bytes(zipped(files))})
+    else:
+        write_files(path, {name: partial(_write_bytes, content) for name, content in files.items()})
+    output().print(f"written: {len(files)} files in {path}", markup=False, soft_wrap=True)
+    return 0
+
+
+def _write_bytes(content: bytes, path: Path) -> None:
+    path.write_bytes(content)
+
+
+def _gold(options: argparse.Namespace) -> int:
+    from partialslip.cli.consoles import output
+    from partialslip.tools.output.files import write_texts
+    from partialslip.verify.benchmark.gold import gold_files
+    from partialslip.verify.benchmark.problem import numbered
+
+    texts = gold_files(numbered(options.problem), options.form, options.grade)
+    print_written(write_texts(Path(options.out), texts), output())
+    return 0
 
 
 def _build(options: argparse.Namespace) -> int:

@@ -10,8 +10,6 @@ import numpy as np
 import numpy.typing as npt
 from msgspec.structs import replace
 
-from partialslip.halfplane.method import has_closed_form, spacing_error
-from partialslip.halfplane.noise import Noise, noise_of
 from partialslip.result import Result
 from partialslip.result.rig import Rig, key_of, load_rig
 from partialslip.result.state import State
@@ -31,6 +29,7 @@ from partialslip.tools.shown import ByMethod, Drawn
 from partialslip.tools.telling import told_to
 
 if TYPE_CHECKING:
+    from partialslip.halfplane.noise import Noise
     from partialslip.tools.frame import DataFrame
     from partialslip_fem import Kept
 
@@ -97,11 +96,13 @@ class Run(ByMethod[Result], Drawn):
         return next((name for name in telling if estimated(self.results[name], name)), names[0])
 
     @cached_property
-    def noise(self) -> Noise | None:
+    def noise(self) -> "Noise | None":
         """Scatter of a, m and n due to the noise of a measured profile (:func:`partialslip.halfplane.noise.noise_of`),
         which is no part of estimates, bars and verdicts. None without a measured profile, or if its file is gone.
 
         It takes about a CPU second, once, when it is first asked for."""
+        from partialslip.halfplane.noise import noise_of  # takes long to import
+
         try:
             return noise_of(self.scene)
         except InputError:  # the file of the points
@@ -190,6 +191,8 @@ def default_methods(scene: Scene) -> tuple[str, ...]:
     """Return the default methods for ``scene``: fem, and for half-planes the reference
     (:func:`partialslip.run.judge.reference.reference`); beside finite bodies half-planes; with a rig exact and
     equivalent."""
+    from partialslip.halfplane.method import has_closed_form  # takes long to import
+
     if not scene.material.alike:
         return ("fem",)
     if scene.bodies.equivalent is not None:
@@ -353,6 +356,8 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: Acc
     InputError
         If a number of ``accuracy`` is not above 0 and at most 0.1.
     """
+    from partialslip.halfplane.method import spacing_error  # takes long to import
+
     chosen = reference_among(scene, results)
     comparisons = {
         name: compare(result, results[chosen], scene, accuracy)

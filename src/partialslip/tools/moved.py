@@ -11,7 +11,6 @@ _MOVED = {
     "report": "record",
     "codes": "score export",
     "study": "batch map live fatigue",
-    "verify": "benchmark",
     "march": "equivalent",
     "result": "rig",
     "scene": "plan gradual units",

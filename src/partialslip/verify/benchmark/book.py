@@ -5,9 +5,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
 from importlib.resources import files as resources
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import msgspec
 import numpy as np
 from scipy.optimize import isotonic_regression
 
@@ -17,11 +16,12 @@ from partialslip.report.sketch import sketch_svg
 from partialslip.result import Result
 from partialslip.run import run
 from partialslip.run.judge.reference import reference
-from partialslip.scene.reading import scene_toml, set_tables
+from partialslip.scene.reading import scene_toml
 from partialslip.tools.origin import Made, origin_lines
-from partialslip.tools.output.files import csv_text, json_text, zipped
+from partialslip.tools.output.files import json_text, zipped
 from partialslip.tools.output.page import render_page
 from partialslip.tools.output.svg import svg
+from partialslip.verify.benchmark.data import IDLE, problem_data, targets_csv
 from partialslip.verify.benchmark.grade import LIMITS, graded
 from partialslip.verify.benchmark.ladder import CLIMB_HEADS, climb_rows
 from partialslip.verify.benchmark.neutral import files as model_files
@@ -44,7 +44,6 @@ _CELL = 19.0, 11.0  # display: width and height of a cell, points
 _APART = 0.1  # display: least distance of two columns of cells, in a: more than the width of a cell
 
 ErrorsByResolution = Mapping[str, Mapping[float, float]]
-_IDLE = ("steps", "sigma_slope")  # display: keys of loads: a setting of partialslip, and zero in all problems
 _COLUMNS = 8  # display: codes side by side in a scoreboard
 
 
@@ -193,43 +192,15 @@ def book_zip(problems: Mapping[str, Problem]) -> bytes:
         ).encode()
     }
     content["grade.yml"] = (package / "grade.yml").read_bytes()
-    checksums = read_frozen().checksums
     for number, problem in problems.items():
-        own = {name: text.encode() for name, text in _files(problem, checksums[number]).items()} | model_files(problem)
+        texts = {
+            "problem.json": json_text(problem_data(problem)),
+            "scene.toml": scene_toml(problem.scene, SETTINGS),
+            "targets.csv": targets_csv(problem),
+        }
+        own = {name: text.encode() for name, text in texts.items()} | model_files(problem)
         content |= {f"{number}/{name}": data for name, data in own.items()}
     return zipped(content)
-
-
-def _files(problem: Problem, checksum: str) -> dict[str, str]:
-    a = problem.targets["a"].value
-    listed = [
-        (key, {"x": float(place) * a} if (place := key.partition("@")[2]) else {}, target)
-        for key, target in problem.targets.items()
-    ]
-    everything = {
-        "number": problem.number,
-        "edition": EDITION,
-        "checksum": checksum,
-        "title": problem.title,
-        "statement": problem.statement,
-        "sources": msgspec.to_builtins(problem.sources),
-        "remark": problem.why,
-        "data": _given(set_tables(problem.scene, SETTINGS)),
-        "targets": {key: placed | msgspec.to_builtins(target) for key, placed, target in listed},
-    }
-    columns = ("value", "unit", "scale", "uncertainty", "group", "known")
-    lines = [[key, placed.get("x"), *(getattr(target, name) for name in columns)] for key, placed, target in listed]
-    return {
-        "problem.json": json_text(everything),
-        "scene.toml": scene_toml(problem.scene, SETTINGS),
-        "targets.csv": csv_text(("key", "x", *columns), lines),
-    }
-
-
-def _given(tables: dict[str, Any]) -> dict[str, Any]:
-    """``tables`` of a scene without the load keys that are not part of the problem (``_IDLE``)."""
-    load = {key: value for key, value in tables["load"].items() if key not in _IDLE}
-    return tables | {"load": load}
 
 
 def _boards(problems: Mapping[str, Problem], submissions: Sequence[Submission]) -> list[Board]:
@@ -265,7 +236,7 @@ def _data(problem: Problem) -> list[tuple[str, str, str]]:
     found, table = [], ""
     for line in rows.settings(problem.scene):
         table = line[0] or table
-        if table not in SETTINGS and line[1] not in _IDLE:
+        if table not in SETTINGS and line[1] not in IDLE:
             found.append(line)
     return found
 

@@ -11,7 +11,6 @@ from partialslip.result import Result
 from partialslip.result.peak import peak_error
 from partialslip.scene import Scene
 from partialslip.scene.units import Dimension
-from partialslip.study.fatigue import assess
 from partialslip.verify.benchmark.problem import Problem
 from partialslip.verify.benchmark.submission import Answer
 
@@ -119,6 +118,8 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
         error = math.nan if off is None else off / p0
         yield "sigma_xx", Quantity(result.surface.largest[1], "Pa", p0, "stress", error)
     if result.stress_at and scene.fatigue.distance:
+        from partialslip.study.fatigue import assess  # takes long to import
+
         rating = assess(scene, result, ["swt"]).ratings["swt"]
         errors = rating.errors or (math.nan, math.nan)
         for key, spot, error in zip(

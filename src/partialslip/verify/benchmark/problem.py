@@ -138,10 +138,10 @@ def chosen_problems(numbers: str | None) -> dict[str, Problem]:
 
 def numbered(number: str) -> Problem:
     """The problem with this ``number``. Raises InputError if there is none."""
-    known = read_problems()
+    known = texts()
     if number not in known:
         raise InputError(f"PROBLEM {number!r}: must be one of {', '.join(known)}")
-    return known[number]
+    return parse_problem(number, known[number], read_frozen())
 
 
 def texts() -> dict[str, str]:

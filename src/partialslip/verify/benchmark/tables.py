@@ -63,8 +63,15 @@ def read_table(
         If a file cannot be read.
     """
     paths = [Path(each) for each in ([files] if isinstance(files, (str, os.PathLike)) else files)]
-    origin, scene = " and ".join(map(str, paths)), problem.scene
-    samples = read_tractions(paths, scene, factors, chosen=columns, kept=where)
+    samples = read_tractions(paths, problem.scene, factors, chosen=columns, kept=where)
+    origin = " and ".join(map(str, paths))
+    found = table_values(problem, samples, origin)
+    return found._replace(notes=(*likely_mistakes(problem, samples, origin), *found.notes))
+
+
+def table_values(problem: Problem, samples: Samples, origin: str) -> TableValues:
+    """Read what ``samples``, whose ``origin`` is named in messages, give of the targets of ``problem``. Raises
+    InputError if their pressure does not exceed its noise."""
     result = _result(problem, samples, origin)
     found = targeted(problem, result)
     halves = [_half(problem, samples.coarser(first), origin) for first in (0, 1)]
@@ -72,9 +79,15 @@ def read_table(
     for key, each in found.items():
         apart = [abs(half[key].value - each.value) / each.scale if key in half else float("inf") for half in halves]
         errors[key] = max(each.error if each.error > 0 else 0.0, *apart)  # it may be NaN
-    known = run(scene, ["exact"]).results["exact"] if reference(scene).method == "exact" else None
-    likely = mistakes(scene, result, known) if known else ()
-    return TableValues({key: each.value for key, each in found.items()}, errors, (*likely, *result.notes))
+    return TableValues({key: each.value for key, each in found.items()}, errors, result.notes)
+
+
+def likely_mistakes(problem: Problem, samples: Samples, origin: str) -> tuple[str, ...]:
+    """Notes on likely mistakes in ``samples``, such as other units and signs, where the exact solution is known."""
+    scene = problem.scene
+    if reference(scene).method != "exact":
+        return ()
+    return mistakes(scene, _result(problem, samples, origin), run(scene, ["exact"]).results["exact"])
 
 
 def _result(problem: Problem, samples: Samples, origin: str) -> Result:
