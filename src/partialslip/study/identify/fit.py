@@ -1,0 +1,321 @@
+"""f from a measured loop of Q over displacement: least squares on the exact loop of half-planes.
+
+From a turning point on, a change y of Q slips the surfaces by G(y; f) = f g(y/f), whatever the amplitude, as long as
+the adhered shear traction has one sign. With turning points Q1 < Q2, compliance C of all that is in series, and drift,
+
+    displacement = d0 + C Q + drift t + G(Q - Q1)                  where Q rises,
+    displacement = d0 + C Q + drift t + G(Q2 - Q1) - G(Q2 - Q)     where Q falls.
+
+d0, C, drift, Q1 and Q2 are nuisance parameters. Both columns have noise: a row weighs 1/(s_d^2 + (C + G')^2 s_Q^2)
+(effective variance: Orear, 1982). With S(f) the least sum of squares at f, s^2 = S_min/(n - 6), and t of Student's
+distribution, the interval is S(f) <= S_min + tau t^2 s^2; it is one-sided if it contains f = infinity, no slip. tau, the
+sum of the autocorrelations of the residuals, counts correlated rows as fewer.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq, least_squares, minimize_scalar
+from scipy.stats import t as student
+
+from partialslip.halfplane.contact import Contact, contact
+from partialslip.halfplane.loop import hysteresis
+from partialslip.scene import Scene
+from partialslip.study.identify.half_planes import half_planes
+from partialslip.study.identify.interval import LEVEL, Interval
+from partialslip.study.identify.measured_loop import Branches, MeasuredLoop, branches_of
+from partialslip.tools.arrays import Array
+from partialslip.tools.errors import InputError
+
+_NEARLY = 1 - 1e-9  # accuracy: Q/(f P) of the largest loop
+_POINTS = 401  # accuracy: of that loop
+_GRID = np.append(np.arange(25) / 25, [0.98, 0.995, 1.0, 1.01, 1.03, 1.06, 1.1])  # of S over Q/(f P)
+_WALL = 1e4  # accuracy: residual of Q/(f P) - 1 above sliding, in standard deviations
+_PARAMETERS = 6
+_LEAST = 1e-7  # accuracy: of the range: least noise
+_PULL = 14.0  # accuracy: chi^2 of two turning points above which rows are missing there: 1 in 1000
+_CORRELATED = 3.0  # accuracy: standard deviations of the first autocorrelation of white noise
+_BACKWARDS = 4.0  # accuracy: standard errors
+_FLAT, _SLIDES = 0.02, 0.25  # limit: of the ranges of Q and displacement: a plateau of sliding
+_ROOMS = 400  # display: points of a branch of the fitted loop
+_RATIO = 2.0  # display: upper over lower limit above which f is hardly told
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """What a loop tells.
+
+    Parameters
+    ----------
+    f, stiffness : Interval
+        ``stiffness``, dQ/d(displacement) while all sticks, of all that is in series, Pa.
+    area : float
+        Of the fitted loop: energy dissipated per cycle by Q, J/m.
+    opening : float
+        Largest width of the fitted loop along the displacement, m.
+    scatter : float
+        Standard deviation of the residuals of the displacement, m.
+    turns : (float, float)
+        Fitted Q at the turning points, N/m.
+    correlation : float
+        Rows that count as one, tau.
+    P : float
+        Normal force, N/m.
+    loop : MeasuredLoop
+        The rows that were fitted.
+    fitted : (n,) array
+        Fitted displacement at the rows, m.
+    curve : (2, k) array
+        Displacement without drift (m) and Q (N/m) along the fitted loop.
+    drift : (n,) array
+        Fitted drift at the rows, m.
+    remarks : tuple of str
+    """
+
+    f: Interval
+    stiffness: Interval
+    area: float
+    opening: float
+    scatter: float
+    turns: tuple[float, float]
+    correlation: float
+    P: float
+    loop: MeasuredLoop
+    fitted: Array
+    curve: Array
+    drift: Array
+    remarks: tuple[str, ...]
+
+
+class _Solved(NamedTuple):
+    """Parameters (5,) of least squares at a given f, sum of squares S, residuals and their derivatives."""
+
+    at: Array
+    S: float
+    residuals: Array
+    jacobian: Array
+
+
+class _Fit:
+    """Least squares in units of the range of displacement and of Q2 - Q1; ``u`` = (Q2 - Q1)/(2 f P)."""
+
+    def __init__(self, pressed: Contact, A: float, tension: float, branches: Branches, sharp: bool = True) -> None:
+        f = pressed.f if pressed.bound else 1.0
+        largest = 2 * f * pressed.P * _NEARLY
+        loop = hysteresis(pressed, A, f, largest, tension * largest, _POINTS)
+        Q, slipped = loop.Q[:_POINTS] / (2 * f * pressed.P), loop.displacement[:_POINTS] / f
+        self.G = PchipInterpolator(Q, slipped)
+        self.slope = self.G.derivative()
+        own = branches.loop
+        self.low, self.force = branches.turns[0], float(np.ptp(branches.turns))
+        self.P, self.length = pressed.P, float(np.ptp(own.displacement))
+        self.y, self.d = (own.Q - self.low) / self.force, (own.displacement - own.displacement[0]) / self.length
+        self.t = (own.time - own.time[0]) / (np.ptp(own.time) or 1.0)
+        self.rises = branches.way > 0
+        self.noise = np.maximum(branches.noise / (self.length, self.force), _LEAST)
+        self.turns_error = np.maximum(branches.turns_error / self.force, _LEAST) if sharp else np.full(2, np.inf)
+        line = np.linalg.lstsq(np.stack([np.ones_like(self.y), self.y, self.t], 1), self.d, rcond=None)[0]
+        self._start = np.append(line, [0.0, 1.0])
+
+    def friction(self, u: float) -> float:
+        return self.force / (2 * self.P * u) if u > 0 else np.inf
+
+    def slipped(self, change: Array, u: float) -> tuple[Array, Array]:
+        """G and dG/dy at a ``change`` of Q."""
+        if u <= 0:
+            return np.zeros_like(change), np.zeros_like(change)
+        end = self.G.x[-1]
+        s = u * change
+        inside = np.clip(s, 0, end)
+        slope = self.slope(inside)
+        G = self.G(inside) + slope * np.maximum(s - end, 0)
+        scale = self.friction(u) / self.length
+        return scale * G, scale * u * slope
+
+    def model(self, at: Array, u: float) -> tuple[Array, Array]:
+        """Displacement (n,) and its slope along a branch."""
+        start, compliance, drift, low, high = at
+        G, slope = self.slipped(np.where(self.rises, self.y - low, high - self.y), u)
+        whole = self.slipped(np.array(high - low), u)[0]
+        model = start + compliance * self.y + drift * self.t + np.where(self.rises, G, whole - G)
+        return model, compliance + slope
+
+    def residuals(self, at: Array, u: float) -> Array:
+        model, slope = self.model(at, u)
+        rows = (self.d - model) / np.hypot(self.noise[0], slope * self.noise[1])
+        turns = (at[3:] - (0, 1)) / self.turns_error
+        return np.concatenate([rows, turns, [_WALL * max(u * (at[4] - at[3]) - 1, 0)]])
+
+    def solve(self, u: float) -> _Solved:
+        found = least_squares(self.residuals, self._start, method="lm", args=(u,), xtol=1e-10, ftol=1e-12)
+        self._start = found.x  # near that of the next u
+        return _Solved(found.x, 2 * float(found.cost), found.fun, found.jac)
+
+    @cached_property
+    def grid(self) -> list[float]:
+        """S at the u of the grid."""
+        return [self.solve(u).S for u in _GRID]
+
+    @cached_property
+    def best(self) -> float:
+        """u of the least S."""
+        k = int(np.argmin(self.grid))
+        low, high = _GRID[max(k - 1, 0)], _GRID[min(k + 1, len(_GRID) - 1)]
+        found = minimize_scalar(lambda u: self.solve(u).S, bounds=(low, high), method="bounded", options={"xatol": 1e-6})
+        return float(found.x if found.fun < self.grid[k] else _GRID[k])
+
+    def limits(self, most: float) -> tuple[float, float]:
+        """Least and largest u with S <= ``most``: 0 and the largest of the grid where S is that small there."""
+
+        def over(u: float) -> float:
+            return self.solve(u).S - most
+
+        inside = np.array(self.grid) <= most
+        below = _GRID[(_GRID < self.best) & ~inside]
+        above = _GRID[(_GRID > self.best) & ~inside]
+        low = brentq(over, below[-1], self.best, xtol=1e-6) if len(below) else 0.0
+        high = brentq(over, self.best, above[0], xtol=1e-6) if len(above) else float(_GRID[-1])
+        return low, high
+
+
+def from_loop(scene: Scene, loop: MeasuredLoop) -> Identified:
+    """f, and the stiffness of all in series, from a measured ``loop`` with their intervals of 95 %; material, profile,
+    P and dsigma/dQ are those of ``scene``, its f plays no part. Bodies of a size act as equivalent half-planes.
+
+    Raises
+    ------
+    InputError
+        If the scene has no loop whose slip only grows from turning point to turning point (P varies, dissimilar
+        materials, large tension), or the loop is not one of partial slip: it slides, or dissipates no energy.
+    """
+    scene, remarks = half_planes(scene)
+    pressed, tension = contact(scene), _tension(scene)
+    if abs(tension) * pressed.a * np.pi >= 4:  # adhered: dq = (dQ/pi + x dsigma/4)/sqrt(a^2 - x^2)
+        raise InputError("load.sigma: slip reverses between the load points, and the loop does not tell f: must be "
+                         "below 4 dQ/(pi a), or give --stick-width or --slip-scar")  # fmt: skip
+    branches = branches_of(loop)
+    _require_partial_slip(branches, pressed.P)
+    fit = _Fit(pressed, scene.material.A, tension, branches)
+    _require_friction(fit, loop.origin)
+    found, spare = fit.solve(fit.best), len(fit.y) - _PARAMETERS
+    if np.sum(found.residuals[-3:-1] ** 2) > _PULL * max(found.S / spare, 1):
+        fit = _Fit(pressed, scene.material.A, tension, branches, sharp=False)
+        found = fit.solve(fit.best)
+        remarks += ("The rows near the turning points of Q do not fit the loop: are rows missing there? The fit finds "
+                    "the turning points.",)  # fmt: skip
+    rows = found.residuals[:-3]
+    variance, tau = found.S / spare, _correlation(rows)
+    correlated = _first_autocorrelation(rows) > _CORRELATED / np.sqrt(len(rows))
+    if correlated:  # an error of the model repeats in each cycle
+        tau *= max(branches.halves / 2, 1)
+        remarks += (f"The residuals are correlated: {tau:.0f} rows count as one. The interval does not cover what acts "
+                    "like friction elsewhere: slip in a fixture, a time lag between the columns.",)  # fmt: skip
+    unit = tau * variance * float(student.ppf((1 + LEVEL) / 2, max(len(rows) / tau - _PARAMETERS, 1))) ** 2
+    low, high = fit.limits(found.S + unit)
+    f = Interval(fit.friction(fit.best), max(fit.friction(high), _sliding(found, fit)), fit.friction(low))
+    remarks += _said(f, fit, found, high)
+    model = fit.model(found.at, fit.best)[0]
+    drift = found.at[2] * fit.t * fit.length
+    start = branches.loop.displacement[0]
+    way = np.append(np.linspace(0, 1, _ROOMS), np.linspace(1, 0, _ROOMS)) * np.ptp(found.at[3:])
+    G = fit.slipped(np.where(np.arange(2 * _ROOMS) < _ROOMS, way, way[_ROOMS] - way), fit.best)[0]
+    moved = found.at[0] + found.at[1] * (way + found.at[3])
+    moved = start + fit.length * (moved + np.where(np.arange(2 * _ROOMS) < _ROOMS, G, G[_ROOMS - 1] - G))
+    Q = fit.low + fit.force * (way + found.at[3])
+    wide = moved[: _ROOMS - 1 : -1] - moved[:_ROOMS]
+    return Identified(
+        f,
+        _stiffness(fit, found, (low, high), unit),
+        float(np.trapezoid(wide, Q[:_ROOMS])),
+        float(wide.max()),
+        float(np.std(fit.d - model) * fit.length),
+        (float(Q[0]), float(Q[_ROOMS])),
+        tau,
+        pressed.P,
+        branches.loop,
+        start + fit.length * model,
+        np.array([moved, Q]),
+        drift,
+        (*loop.notes, *branches.loop.notes[len(loop.notes) :], *remarks),
+    )
+
+
+def _tension(scene: Scene) -> float:
+    """dsigma/dQ between load points 1 and 2, 1/m."""
+    load = scene.load
+    if load.dsigma and not load.dQ:
+        raise InputError("load.Q: the same at load points 1 and 2: must change for a loop under tension")
+    return load.dsigma / load.dQ if load.dsigma else 0.0
+
+
+def _require_partial_slip(branches: Branches, P: float) -> None:
+    """Raise InputError if the displacement goes on where Q has come to its end."""
+    own, force = branches.loop, float(np.ptp(branches.turns))
+    flat = max(_FLAT, 3 * branches.noise[1] / force)
+    ends = np.where(branches.way > 0, branches.turns[1] - own.Q, own.Q - branches.turns[0]) < flat * force
+    whole = float(np.ptp(own.displacement))
+    for way in (1, -1):
+        there = own.displacement[ends & (branches.way == way)]
+        if len(there) and np.ptp(there) > (_SLIDES + 2 * flat) * whole + 6 * branches.noise[0]:
+            raise InputError(
+                f"{own.origin}: the displacement grows by {np.ptp(there) / whole:.0%} of its range at the largest Q: "
+                f"the contact slides there, and f is about {force / (2 * P):.3g}, half the range of Q over P; must "
+                "be a loop in partial slip"
+            )
+
+
+def _require_friction(fit: _Fit, origin: str) -> None:
+    """Raise InputError if the displacement falls as Q rises, or Q gains energy."""
+    stuck = fit.solve(0.0)
+    rows = stuck.residuals[:-3]
+    if stuck.at[1] <= 0:
+        raise InputError(f"{origin}: the displacement falls as Q rises: change its sign, as by --factors=-1,1")
+    way = rows[fit.rises], rows[~fit.rises]
+    error = np.std(rows) * np.sqrt(_correlation(rows) * (1 / len(way[0]) + 1 / len(way[1])))
+    if way[1].mean() - way[0].mean() < -_BACKWARDS * error:
+        raise InputError(f"{origin}: the loop runs backwards, Q gains energy: must be in the order of time, and Q and "
+                         "displacement of one sign")  # fmt: skip
+
+
+def _sliding(found: _Solved, fit: _Fit) -> float:
+    """f at which the fitted loop would slide."""
+    return float(np.ptp(found.at[3:])) * fit.force / (2 * fit.P)
+
+
+def _said(f: Interval, fit: _Fit, found: _Solved, high: float) -> tuple[str, ...]:
+    """What a reader must know of ``f``."""
+    remarks: tuple[str, ...] = ()
+    if np.isinf(f.high):
+        remarks = (f"The loop does not tell f: one without slip fits as well. f is at least {f.low:.3g}.",)
+        if high >= _GRID[-1] or f.low <= _sliding(found, fit) * (1 + 1e-6):
+            remarks += ("That is Q/P, as the contact does not slide: the loop tells no more.",)
+    elif f.high > _RATIO * f.low:
+        remarks = ("The loop hardly tells f: a loop nearer to sliding, less noise or more cycles tell more.",)
+    return remarks
+
+
+def _stiffness(fit: _Fit, found: _Solved, limits: tuple[float, float], unit: float) -> Interval:
+    """Stiffness in Pa: its own error at one f, and that of f."""
+    own = np.sqrt(unit * np.linalg.pinv(found.jacobian.T @ found.jacobian)[1, 1])
+    at = [fit.solve(u).at[1] - found.at[1] for u in limits]
+    low, high = (found.at[1] + sign * np.hypot(own, max(sign * np.array([*at, 0.0]))) for sign in (-1, 1))
+    scale = fit.force / fit.length
+    return Interval(scale / found.at[1], scale / high, scale / low if low > 0 else np.inf)
+
+
+def _first_autocorrelation(rows: Array) -> float:
+    rows = rows - rows.mean()
+    return float(rows[1:] @ rows[:-1] / (rows @ rows or 1.0))
+
+
+def _correlation(rows: Array) -> float:
+    """Sum of the autocorrelations of ``rows`` (n,), over pairs of lags up to the first negative sum (Geyer, 1992)."""
+    count, rows = len(rows), rows - rows.mean()
+    spectrum = np.abs(np.fft.rfft(rows, 2 * count)) ** 2
+    of = np.fft.irfft(spectrum)[: count // 2 * 2]
+    pairs = (of[::2] + of[1::2]) / (of[0] or 1.0)
+    first = int(np.argmax(pairs <= 0)) if (pairs <= 0).any() else len(pairs)
+    return max(2 * float(pairs[:first].sum()) - 1, 1.0)

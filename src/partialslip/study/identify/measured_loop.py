@@ -1,0 +1,217 @@
+"""A measured loop of Q over displacement: its rows, turning points, branches and noise; SI units.
+
+A branch begins at a turning point of Q. Rows before the first turning point may be a first loading and are left out.
+The noise of a column is the standard deviation of its third differences from row to row over sqrt(20): what is smooth
+cancels.
+"""
+
+import itertools
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from partialslip.scene.columns import dimension_of, place_of, split_unit, unknown_unit
+from partialslip.scene.texttable import TextTable, decoded, read_table
+from partialslip.scene.units import SI, Dimension, Units
+from partialslip.tools.arrays import Array, Indices
+from partialslip.tools.errors import InputError
+from partialslip.tools.inputfile import read_bytes
+
+_LARGEST, _MOST, _FEWEST = 20_000_000, 100_000, 16  # limit: bytes of a file, most and fewest rows of a loop
+_NAMES = {
+    "displacement": {"displacement", "disp", "d", "u", "delta", "travel", "dx"},
+    "Q": {"q", "force", "shear", "tangential force", "shear force", "load"},
+    "time": {"time", "t"},
+}
+_DIMENSIONS: dict[str, Dimension] = {"displacement": "m", "Q": "N/m"}
+_NEAR = 0.15  # accuracy: of the range of Q: rows near a turning point, from which its Q is read
+_CURVE = 5  # fixed: fewest rows for the fit at a turning point
+_SURE = 5.0  # accuracy: standard errors by which turning points of one amplitude may differ
+_SAME = 0.02  # limit: of the range of Q: the same
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredLoop:
+    """Rows in the order of time: ``displacement`` (m), ``Q`` (N/m) and ``time`` (row numbers without a column of it),
+    (n,) each; ``origin``, the file's name, and ``notes`` on what was left out."""
+
+    displacement: Array
+    Q: Array
+    time: Array
+    origin: str = "loop"
+    notes: tuple[str, ...] = ()
+
+
+class Branches(NamedTuple):
+    """Rows on branches of a loop.
+
+    Parameters
+    ----------
+    loop : MeasuredLoop
+        Without the rows before the first turning point.
+    way : (n,) array
+        1 where Q rises, -1 where it falls.
+    turns : (2,) array
+        Q of the lower and the upper turning points, N/m.
+    turns_error : (2,) array
+        Their standard errors, N/m.
+    noise : (2,) array
+        Standard deviations of displacement (m) and Q (N/m).
+    halves : int
+        Number of branches.
+    """
+
+    loop: MeasuredLoop
+    way: Indices
+    turns: Array
+    turns_error: Array
+    noise: Array
+    halves: int
+
+
+def read_loop(
+    file: str | Path, units: Units = SI, columns: Mapping[str, str] | None = None, factors: tuple[float, float] = (1, 1)
+) -> MeasuredLoop:
+    """Read a measured loop from a table.
+
+    Parameters
+    ----------
+    file : str or path
+    units : Units
+        Of columns whose heading states no unit.
+    columns : mapping of str to str, optional
+        Names, or numbers from 1, of the columns displacement, Q and time; default: those that are named so.
+    factors : (float, float)
+        Of displacement and Q, after the units.
+
+    Raises
+    ------
+    InputError
+        If the file is no table with these columns, or has too few or too many rows.
+    """
+    origin = str(file)
+    table = read_table(decoded(read_bytes(file, _LARGEST), origin)[0], origin)
+    places = _places(table, columns or {}, origin)
+    numbers = {name: table.numbers(place, origin) for name, place in places.items()}
+    known = np.all([np.isfinite(each) for each in numbers.values()], axis=0)
+    values = {}
+    for (name, of), factor in zip(_DIMENSIONS.items(), factors, strict=True):
+        heading = table.names[places[name]]
+        if dimension_of(heading) not in (None, of) or (unknown_unit(heading) and factor == 1):
+            allowed = "per unit depth, N/m or N/mm" if name == "Q" else "a length, as mm or um"
+            raise InputError(
+                f"{origin}: column {heading!r}: must be {allowed}, or give the unit's size by --factors DISPLACEMENT,Q"
+            )
+        stated = split_unit(heading)[1]
+        own = numbers[name][known]
+        values[name] = factor * (own * stated if stated else units.to_si(own, of))
+    time = numbers["time"][known] if "time" in numbers else np.flatnonzero(known).astype(float)
+    if (np.diff(time) < 0).any():
+        line = table.lines[int(np.flatnonzero(known)[int((np.diff(time) < 0).argmax()) + 1])]
+        raise InputError(f"{origin}: line {line}: time runs back: must be one record, in the order of time")
+    if not _FEWEST <= len(time) <= _MOST:
+        raise InputError(f"{origin}: {len(time)} rows with values: must be {_FEWEST} to {_MOST}: keep whole cycles")
+    left_out = int(np.count_nonzero(~known))
+    notes = (*table.notes, *([f"left out: {left_out} rows without values"] if left_out else []))
+    return MeasuredLoop(values["displacement"], values["Q"], time, origin, notes)
+
+
+def _places(table: TextTable, columns: Mapping[str, str], origin: str) -> dict[str, int]:
+    """Indices of the columns, by name; without time where there is none."""
+    if wrong := next((name for name in columns if name not in _NAMES), ""):
+        raise InputError(f"--columns {wrong}={columns[wrong]}: must name displacement, Q or time")
+    bare = [re.sub(r"[\[({].*", "", split_unit(name)[0]).strip().lower() for name in table.names]
+    shown = ", ".join(table.names)
+    found = {}
+    for name, words in _NAMES.items():
+        here = [k for k, each in enumerate(bare) if each in words]
+        if name in columns:
+            place = place_of(columns[name], table.names)
+            here = [] if place is None else [place]
+        if len(here) == 1:
+            found[name] = here[0]
+        elif name in columns or name != "time":
+            raise InputError(
+                f"{origin}: column {columns.get(name, name)}: must be one of {shown[:100]}: "
+                "name it by --columns displacement=1,Q=2"
+            )
+    return found
+
+
+def branches_of(loop: MeasuredLoop) -> Branches:
+    """Find turning points, branches and noise of a ``loop``.
+
+    The Q of a turning point at the time t0 is the c0 of the least squares fit c0 + c1 |t - t0| + c2 (t - t0)^2 to rows
+    near it, sharp or smooth.
+
+    Raises
+    ------
+    InputError
+        If Q or the displacement does not change, Q does not both rise and fall, or its amplitude changes.
+    """
+    Q = loop.Q
+    for name, values, of in (("Q", Q, "N/m"), ("displacement", loop.displacement, "m")):
+        if not np.ptp(values) > 0:
+            raise InputError(f"{loop.origin}: {name} is {values[0]:.6g} {of} in all rows: must change")
+    noise = np.array([_scatter(loop.displacement), _scatter(Q)])
+    span, side = np.ptp(Q), np.zeros(len(Q), np.int64)
+    side[Q > Q.max() - _NEAR * span], side[Q < Q.min() + _NEAR * span] = 1, -1
+    near = np.flatnonzero(side)
+    runs = np.split(near, np.flatnonzero(np.diff(side[near])) + 1)
+    turns = [_turn(loop, np.arange(run[0], run[-1] + 1), int(side[run[0]]), noise[1]) for run in runs]
+    rows = [row for row, _, _ in turns]
+    way = np.zeros(len(Q), np.int64)
+    for (start, end), run in zip(itertools.pairwise([*rows, len(Q)]), runs, strict=True):
+        way[start:end] = -side[run[0]]
+    kept = np.arange(rows[0], len(Q))
+    if min(np.count_nonzero(way == 1), np.count_nonzero(way == -1)) < _FEWEST / 2:
+        raise InputError(
+            f"{loop.origin}: Q must rise and fall after its first turning point, "
+            f"in {_FEWEST // 2} rows or more each: record one cycle more"
+        )
+    found = [_mean([turn for turn, run in zip(turns, runs, strict=True) if side[run[0]] == which], span, loop)
+             for which in (-1, 1)]  # fmt: skip
+    notes = loop.notes + ((f"left out: {rows[0]} rows before the first turning point",) if rows[0] else ())
+    part = replace(loop, displacement=loop.displacement[kept], Q=Q[kept], time=loop.time[kept], notes=notes)
+    values, errors = np.array(found).T
+    return Branches(part, way[kept], values, errors, noise, len(set(rows) - {len(Q) - 1}))
+
+
+def _scatter(values: Array) -> float:
+    """Standard deviation of the noise of ``values`` (n,): robust, from third differences."""
+    return float(1.4826 * np.median(np.abs(np.diff(values, 3))) / np.sqrt(20))
+
+
+def _turn(loop: MeasuredLoop, rows: Indices, side: int, noise: float) -> tuple[int, float, float]:
+    """Row, Q (N/m) and standard error of a turning point near ``rows``, an upper one if ``side`` is 1; NaN for Q at
+    the ends of the loop, where rows may be on one side of it only."""
+    Q, time = loop.Q[rows], loop.time[rows]
+    t = (time - time.mean()) / (np.ptp(time) or 1.0)
+    at = t[np.argmax(side * Q)]
+    value, error = float(side * np.max(side * Q)), noise
+    if len(rows) >= _CURVE:
+        bend, slope, _ = np.polyfit(t, Q, 2)
+        at = np.clip(-slope / (2 * bend), t[0], t[-1]) if bend * side < 0 else at
+        inverse = np.linalg.pinv(np.stack([np.ones_like(t), np.abs(t - at), (t - at) ** 2], axis=1))[0]
+        value, error = float(inverse @ Q), float(noise * np.linalg.norm(inverse))
+    at_end = rows[0] == 0 or rows[-1] == len(loop.Q) - 1
+    return int(rows[min(int(np.searchsorted(t, at)), len(t) - 1)]), np.nan if at_end else value, error
+
+
+def _mean(turns: list[tuple[int, float, float]], span: float, loop: MeasuredLoop) -> tuple[float, float]:
+    """Mean Q of the ``turns`` of one side and its standard error, N/m; infinite where none is known."""
+    known = np.array([(value, error) for _, value, error in turns if np.isfinite(value)])
+    if not len(known):
+        rows = [row for row, _, _ in turns]
+        return float(np.mean(loop.Q[rows])), np.inf
+    values, errors = known.T
+    if np.ptp(values) > max(_SURE * float(np.hypot(*errors[[values.argmin(), values.argmax()]])), _SAME * span):
+        raise InputError(
+            f"{loop.origin}: turning points of Q from {values.min():.4g} to {values.max():.4g} N/m: "
+            "must have one amplitude, and a column time where rows are missing: keep cycles of one amplitude"
+        )
+    return float(values.mean()), float(np.sqrt(np.mean(errors**2) / len(errors)))
