@@ -28,9 +28,12 @@ _NAMES = {
     "time": {"time", "t"},
 }
 _DIMENSIONS: dict[str, Dimension] = {"displacement": "m", "Q": "N/m"}
-_NEAR = 0.15  # accuracy: of the range of Q: rows near a turning point, from which its Q is read
+_APART = 0.3  # limit: of the range of Q: a turning point is that near to an extreme
+_NEAR = 0.1  # accuracy: of the range of Q: rows near a turning point, from which its Q is read
+_GAP = 4.0  # limit: of the time between rows: rows are missing
 _CURVE = 5  # fixed: fewest rows for the fit at a turning point
 _SURE = 5.0  # accuracy: standard errors by which turning points of one amplitude may differ
+_LEAST = 5e-4  # accuracy: of the range of Q: least error of a turning point, that of the fit to half a sine
 _SAME = 0.02  # limit: of the range of Q: the same
 
 
@@ -159,7 +162,7 @@ def branches_of(loop: MeasuredLoop) -> Branches:
             raise InputError(f"{loop.origin}: {name} is {values[0]:.6g} {of} in all rows: must change")
     noise = np.array([_scatter(loop.displacement), _scatter(Q)])
     span, side = np.ptp(Q), np.zeros(len(Q), np.int64)
-    side[Q > Q.max() - _NEAR * span], side[Q < Q.min() + _NEAR * span] = 1, -1
+    side[Q > Q.max() - _APART * span], side[Q < Q.min() + _APART * span] = 1, -1
     near = np.flatnonzero(side)
     runs = np.split(near, np.flatnonzero(np.diff(side[near])) + 1)
     turns = [_turn(loop, np.arange(run[0], run[-1] + 1), int(side[run[0]]), noise[1]) for run in runs]
@@ -187,19 +190,28 @@ def _scatter(values: Array) -> float:
 
 
 def _turn(loop: MeasuredLoop, rows: Indices, side: int, noise: float) -> tuple[int, float, float]:
-    """Row, Q (N/m) and standard error of a turning point near ``rows``, an upper one if ``side`` is 1; NaN for Q at
-    the ends of the loop, where rows may be on one side of it only."""
+    """Row, Q (N/m) and standard error of a turning point near ``rows``, an upper one if ``side`` is 1; NaN for Q
+    where rows are missing, and at the ends of the loop, where rows may be on one side of it only."""
+    top = side * loop.Q[rows]
+    near = np.flatnonzero(top > np.max(side * loop.Q) - _NEAR * np.ptp(loop.Q))
+    rows = rows[near[0] : near[-1] + 1] if len(near) else rows
     Q, time = loop.Q[rows], loop.time[rows]
     t = (time - time.mean()) / (np.ptp(time) or 1.0)
     at = t[np.argmax(side * Q)]
     value, error = float(side * np.max(side * Q)), noise
     if len(rows) >= _CURVE:
-        bend, slope, _ = np.polyfit(t, Q, 2)
+        inverse = np.linalg.pinv(np.vander(t, 3))
+        bend, slope, _ = inverse @ Q
+        at_error = noise * np.linalg.norm(inverse[1]) / abs(2 * bend) if bend else np.inf
         at = np.clip(-slope / (2 * bend), t[0], t[-1]) if bend * side < 0 else at
-        inverse = np.linalg.pinv(np.stack([np.ones_like(t), np.abs(t - at), (t - at) ** 2], axis=1))[0]
-        value, error = float(inverse @ Q), float(noise * np.linalg.norm(inverse))
-    at_end = rows[0] == 0 or rows[-1] == len(loop.Q) - 1
-    return int(rows[min(int(np.searchsorted(t, at)), len(t) - 1)]), np.nan if at_end else value, error
+        inverse = np.linalg.pinv(np.stack([np.ones_like(t), np.abs(t - at), (t - at) ** 2], axis=1))
+        value, kink, _ = inverse @ Q
+        error = float(np.hypot(noise * np.linalg.norm(inverse[0]), kink * at_error))
+    middle = (loop.Q.max() + loop.Q.min()) / 2
+    far = np.flatnonzero(side * (loop.Q - middle) < 0)
+    at_end = not (len(far) and far[0] < rows[0] and far[-1] > rows[-1])
+    gap = not len(near) or np.diff(time).max(initial=0) > _GAP * np.median(np.diff(loop.time))
+    return int(rows[min(int(np.searchsorted(t, at)), len(t) - 1)]), np.nan if at_end or gap else float(value), error
 
 
 def _mean(turns: list[tuple[int, float, float]], span: float, loop: MeasuredLoop) -> tuple[float, float]:
@@ -209,9 +221,11 @@ def _mean(turns: list[tuple[int, float, float]], span: float, loop: MeasuredLoop
         rows = [row for row, _, _ in turns]
         return float(np.mean(loop.Q[rows])), np.inf
     values, errors = known.T
-    if np.ptp(values) > max(_SURE * float(np.hypot(*errors[[values.argmin(), values.argmax()]])), _SAME * span):
+    weights = np.hypot(errors, _LEAST * span) ** -2
+    mean = float(weights @ values / weights.sum())
+    if (np.abs(values - mean) > np.maximum(_SURE * errors, _SAME * span)).any():
         raise InputError(
             f"{loop.origin}: turning points of Q from {values.min():.4g} to {values.max():.4g} N/m: "
             "must have one amplitude, and a column time where rows are missing: keep cycles of one amplitude"
         )
-    return float(values.mean()), float(np.sqrt(np.mean(errors**2) / len(errors)))
+    return mean, float(weights.sum() ** -0.5)
