@@ -7,12 +7,12 @@ the adhered shear traction has one sign. With turning points Q1 < Q2, compliance
     displacement = d0 + C Q + drift t + G(Q2 - Q1) - G(Q2 - Q)     where Q falls.
 
 d0, C, drift, Q1 and Q2 are nuisance parameters. Both columns have noise: a row weighs 1/(s_d^2 + (C + G')^2 s_Q^2)
-(effective variance: Orear, 1982). With S(f) the least sum of squares at f, s^2 = S_min/(n - 6), and t of Student's
+(effective variance: Orear 1982). With S(f) the least sum of squares at f, s^2 = S_min/(n - 6), and t of Student's
 distribution, the interval is S(f) <= S_min + tau t^2 s^2; it is one-sided if it contains f = infinity, no slip. tau, the
 sum of the autocorrelations of the residuals, counts correlated rows as fewer.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -32,7 +32,7 @@ from partialslip.tools.errors import InputError
 
 _NEARLY = 1 - 1e-9  # accuracy: Q/(f P) of the largest loop
 _POINTS = 401  # accuracy: of that loop
-_GRID = np.append(np.arange(25) / 25, [0.98, 0.995, 1.0, 1.01, 1.03, 1.06, 1.1])  # of S over Q/(f P)
+_GRID = np.array([*np.arange(10) / 10, 0.95, 0.98, 1.0, 1.02, 1.06, 1.1])  # of S over Q/(f P)
 _WALL = 1e4  # accuracy: residual of Q/(f P) - 1 above sliding, in standard deviations
 _PARAMETERS = 6
 _LEAST = 1e-7  # accuracy: of the range: least noise
@@ -40,7 +40,7 @@ _PULL = 14.0  # accuracy: chi^2 of two turning points above which rows are missi
 _CORRELATED = 3.0  # accuracy: standard deviations of the first autocorrelation of white noise
 _BACKWARDS = 4.0  # accuracy: standard errors
 _FLAT, _SLIDES = 0.02, 0.25  # limit: of the ranges of Q and displacement: a plateau of sliding
-_ROOMS = 400  # display: points of a branch of the fitted loop
+_BRANCH = 400  # display: points of a branch of the fitted loop
 _RATIO = 2.0  # display: upper over lower limit above which f is hardly told
 
 
@@ -65,13 +65,11 @@ class Identified:
     P : float
         Normal force, N/m.
     loop : MeasuredLoop
-        The rows that were fitted.
-    fitted : (n,) array
-        Fitted displacement at the rows, m.
+        The rows that were fitted: means of successive rows if Q is noisy.
+    fitted, drift : (n,) arrays
+        Fitted displacement at these rows, and the part of it that is drift, m.
     curve : (2, k) array
         Displacement without drift (m) and Q (N/m) along the fitted loop.
-    drift : (n,) array
-        Fitted drift at the rows, m.
     remarks : tuple of str
     """
 
@@ -85,8 +83,8 @@ class Identified:
     P: float
     loop: MeasuredLoop
     fitted: Array
-    curve: Array
     drift: Array
+    curve: Array
     remarks: tuple[str, ...]
 
 
@@ -103,11 +101,9 @@ class _Fit:
     """Least squares in units of the range of displacement and of Q2 - Q1; ``u`` = (Q2 - Q1)/(2 f P)."""
 
     def __init__(self, pressed: Contact, A: float, tension: float, branches: Branches, sharp: bool = True) -> None:
-        f = pressed.f if pressed.bound else 1.0
-        largest = 2 * f * pressed.P * _NEARLY
-        loop = hysteresis(pressed, A, f, largest, tension * largest, _POINTS)
-        Q, slipped = loop.Q[:_POINTS] / (2 * f * pressed.P), loop.displacement[:_POINTS] / f
-        self.G = PchipInterpolator(Q, slipped)
+        largest = 2 * pressed.P * _NEARLY
+        loop = hysteresis(pressed, A, 1.0, largest, tension * largest, _POINTS)
+        self.G = PchipInterpolator(loop.Q[:_POINTS] / (2 * pressed.P), loop.displacement[:_POINTS])
         self.slope = self.G.derivative()
         own = branches.loop
         self.low, self.force = branches.turns[0], float(np.ptp(branches.turns))
@@ -116,7 +112,7 @@ class _Fit:
         count = np.bincount(blocks)
         Q, moved, time = (np.bincount(blocks, each) / count for each in (own.Q, own.displacement, own.time))
         self.y, self.d = (Q - self.low) / self.force, (moved - own.displacement[0]) / self.length
-        self.t = (time - own.time[0]) / (np.ptp(own.time) or 1.0)
+        self.time, self.t = time, (time - own.time[0]) / (np.ptp(own.time) or 1.0)
         self.rises = np.bincount(blocks, branches.way) > 0
         self.noise = np.maximum(branches.noise / (self.length, self.force), _LEAST)[:, None] / np.sqrt(count)
         self.turns_error = np.maximum(branches.turns_error / self.force, _LEAST) if sharp else np.full(2, np.inf)
@@ -124,7 +120,7 @@ class _Fit:
         self._start = np.append(line, [0.0, 1.0])
 
     def friction(self, u: float) -> float:
-        return self.force / (2 * self.P * u) if u > 0 else np.inf
+        return float(self.force / (2 * self.P * u)) if u > 0 else np.inf
 
     def slipped(self, change: Array, u: float) -> tuple[Array, Array]:
         """G and dG/dy at a ``change`` of Q."""
@@ -146,6 +142,15 @@ class _Fit:
         model = start + compliance * self.y + drift * self.t + np.where(self.rises, G, whole - G)
         return model, compliance + slope
 
+    def closed(self, at: Array) -> tuple[Array, Array]:
+        """Q (N/m) and displacement (m) of the fitted loop without drift, (2 k,): k points up, k down."""
+        _, _, _, low, high = at
+        share = np.linspace(0, 1, _BRANCH)
+        way = (high - low) * np.append(share, share[::-1])
+        G = self.slipped((high - low) * np.append(share, share), self.best)[0]
+        G[_BRANCH:] = G[_BRANCH - 1] - G[_BRANCH:]
+        return self.low + self.force * (low + way), self.length * (at[0] + at[1] * (low + way) + G)
+
     def residuals(self, at: Array, u: float) -> Array:
         model, slope = self.model(at, u)
         rows = (self.d - model) / np.hypot(self.noise[0], slope * self.noise[1])
@@ -153,7 +158,7 @@ class _Fit:
         return np.concatenate([rows, turns, [_WALL * max(u * (at[4] - at[3]) - 1, 0)]])
 
     def solve(self, u: float) -> _Solved:
-        found = least_squares(self.residuals, self._start, method="lm", args=(u,), xtol=1e-10, ftol=1e-12)
+        found = least_squares(self.residuals, self._start, method="lm", args=(u,), xtol=1e-9, ftol=1e-10)
         self._start = found.x  # near that of the next u
         return _Solved(found.x, 2 * float(found.cost), found.fun, found.jac)
 
@@ -167,7 +172,9 @@ class _Fit:
         """u of the least S."""
         k = int(np.argmin(self.grid))
         low, high = _GRID[max(k - 1, 0)], _GRID[min(k + 1, len(_GRID) - 1)]
-        found = minimize_scalar(lambda u: self.solve(u).S, bounds=(low, high), method="bounded", options={"xatol": 1e-6})
+        found = minimize_scalar(
+            lambda u: self.solve(u).S, bounds=(low, high), method="bounded", options={"xatol": 1e-5}
+        )
         return float(found.x if found.fun < self.grid[k] else _GRID[k])
 
     def limits(self, most: float) -> tuple[float, float]:
@@ -177,10 +184,10 @@ class _Fit:
             return self.solve(u).S - most
 
         inside = np.array(self.grid) <= most
-        below = _GRID[(_GRID < self.best) & ~inside]
-        above = _GRID[(_GRID > self.best) & ~inside]
-        low = brentq(over, below[-1], self.best, xtol=1e-6) if len(below) else 0.0
-        high = brentq(over, self.best, above[0], xtol=1e-6) if len(above) else float(_GRID[-1])
+        below = _GRID[(self.best > _GRID) & ~inside]
+        above = _GRID[(self.best < _GRID) & ~inside]
+        low = brentq(over, below[-1], self.best, xtol=1e-5) if len(below) else 0.0
+        high = brentq(over, self.best, above[0], xtol=1e-5) if len(above) else float(_GRID[-1])
         return low, high
 
 
@@ -220,29 +227,26 @@ def from_loop(scene: Scene, loop: MeasuredLoop) -> Identified:
     low, high = fit.limits(found.S + unit)
     f = Interval(fit.friction(fit.best), max(fit.friction(high), _sliding(found, fit)), fit.friction(low))
     remarks += _said(f, fit, found, high)
-    model = fit.model(found.at, fit.best)[0]
-    drift = found.at[2] * fit.t * fit.length
     start = branches.loop.displacement[0]
-    way = np.append(np.linspace(0, 1, _ROOMS), np.linspace(1, 0, _ROOMS)) * np.ptp(found.at[3:])
-    G = fit.slipped(np.where(np.arange(2 * _ROOMS) < _ROOMS, way, way[_ROOMS] - way), fit.best)[0]
-    moved = found.at[0] + found.at[1] * (way + found.at[3])
-    moved = start + fit.length * (moved + np.where(np.arange(2 * _ROOMS) < _ROOMS, G, G[_ROOMS - 1] - G))
-    Q = fit.low + fit.force * (way + found.at[3])
-    wide = moved[: _ROOMS - 1 : -1] - moved[:_ROOMS]
+    moved, Q = start + fit.length * fit.d, fit.low + fit.force * fit.y
+    fitted_rows = replace(branches.loop, displacement=moved, Q=Q, time=fit.time)
+    fitted = start + fit.length * fit.model(found.at, fit.best)[0]
+    Q, moved = fit.closed(found.at)
+    wide = moved[: _BRANCH - 1 : -1] - moved[:_BRANCH]
     return Identified(
         f,
         _stiffness(fit, found, (low, high), unit),
-        float(np.trapezoid(wide, Q[:_ROOMS])),
+        float(np.trapezoid(wide, Q[:_BRANCH])),
         float(wide.max()),
-        float(np.std(fit.d - model) * fit.length),
-        (float(Q[0]), float(Q[_ROOMS])),
+        float(np.std(fitted - fitted_rows.displacement)),
+        (float(Q[0]), float(Q[_BRANCH])),
         tau,
         pressed.P,
-        branches.loop,
-        start + fit.length * model,
-        np.array([moved, Q]),
-        drift,
-        (*loop.notes, *branches.loop.notes[len(loop.notes) :], *remarks),
+        fitted_rows,
+        fitted,
+        found.at[2] * fit.t * fit.length,
+        np.array([start + moved, Q]),
+        (*branches.loop.notes, *remarks),
     )
 
 
@@ -286,9 +290,10 @@ def _require_friction(fit: _Fit, origin: str) -> None:
     rows = stuck.residuals[:-3]
     if stuck.at[1] <= 0:
         raise InputError(f"{origin}: the displacement falls as Q rises: change its sign, as by --factors=-1,1")
-    way = rows[fit.rises], rows[~fit.rises]
-    error = np.std(rows) * np.sqrt(_correlation(rows) * (1 / len(way[0]) + 1 / len(way[1])))
-    if way[1].mean() - way[0].mean() < -_BACKWARDS * error:
+    opening = np.where(fit.rises, -1, 1) * fit.y * (1 - fit.y)  # of a loop with little slip
+    wide = opening @ rows / (opening @ opening)
+    rest = rows - wide * opening
+    if wide < -_BACKWARDS * np.std(rest) * np.sqrt(_correlation(rest) / (opening @ opening)):
         raise InputError(f"{origin}: the loop runs backwards, Q gains energy: must be in the order of time, and Q and "
                          "displacement of one sign")  # fmt: skip
 
@@ -316,7 +321,7 @@ def _stiffness(fit: _Fit, found: _Solved, limits: tuple[float, float], unit: flo
     at = [fit.solve(u).at[1] - found.at[1] for u in limits]
     low, high = (found.at[1] + sign * np.hypot(own, max(sign * np.array([*at, 0.0]))) for sign in (-1, 1))
     scale = fit.force / fit.length
-    return Interval(scale / found.at[1], scale / high, scale / low if low > 0 else np.inf)
+    return Interval(float(scale / found.at[1]), float(scale / high), float(scale / low) if low > 0 else np.inf)
 
 
 def _first_autocorrelation(rows: Array) -> float:

@@ -13,10 +13,11 @@ def half_planes(scene: Scene) -> tuple[Scene, tuple[str, ...]]:
     Raises
     ------
     InputError
-        If the materials differ, P or M varies, the loads are not in phase or sigma_slope varies.
+        If the materials differ, f varies along x, P or M varies, the loads are not in phase or sigma_slope varies.
     """
     load = scene.load
     load.require_forces(scene.units)
+    scene.require_uniform_friction("for partialslip identify, which finds it")
     for wrong, key, must in (
         (not scene.material.alike, "material.upper, material.lower: the bodies differ", "be of one material"),
         (scene.presses_anew, "load: P or M varies", "be constant"),

@@ -5,7 +5,6 @@ The noise of a column is the standard deviation of its third differences from ro
 cancels.
 """
 
-import itertools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -35,6 +34,8 @@ _CURVE = 5  # fixed: fewest rows for the fit at a turning point
 _SURE = 5.0  # accuracy: standard errors by which turning points of one amplitude may differ
 _LEAST = 5e-4  # accuracy: of the range of Q: least error of a turning point, that of the fit to half a sine
 _SAME = 0.02  # limit: of the range of Q: the same
+_BACK = 0.1  # limit: of the range of Q: by how much it runs back on a branch
+_AMPLITUDE = "must have one amplitude, and a column time where rows are missing: keep cycles of one amplitude"
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,26 +163,29 @@ def branches_of(loop: MeasuredLoop) -> Branches:
             raise InputError(f"{loop.origin}: {name} is {values[0]:.6g} {of} in all rows: must change")
     noise = np.array([_scatter(loop.displacement), _scatter(Q)])
     span, side = np.ptp(Q), np.zeros(len(Q), np.int64)
-    side[Q > Q.max() - _APART * span], side[Q < Q.min() + _APART * span] = 1, -1
+    side[(Q.max() - Q) < _APART * span], side[(Q - Q.min()) < _APART * span] = 1, -1
     near = np.flatnonzero(side)
     runs = np.split(near, np.flatnonzero(np.diff(side[near])) + 1)
-    turns = [_turn(loop, np.arange(run[0], run[-1] + 1), int(side[run[0]]), noise[1]) for run in runs]
+    sides = [int(side[run[0]]) for run in runs]
+    turns = [_turn(loop, np.arange(run[0], run[-1] + 1), of, noise[1]) for run, of in zip(runs, sides, strict=True)]
     rows = [row for row, _, _ in turns]
-    way = np.zeros(len(Q), np.int64)
-    for (start, end), run in zip(itertools.pairwise([*rows, len(Q)]), runs, strict=True):
-        way[start:end] = -side[run[0]]
     kept = np.arange(rows[0], len(Q))
+    branch = np.maximum(np.searchsorted(rows, kept) - 1, 0)
+    way = -np.array(sides)[branch]
     if min(np.count_nonzero(way == 1), np.count_nonzero(way == -1)) < _FEWEST / 2:
         raise InputError(
             f"{loop.origin}: Q must rise and fall after its first turning point, "
             f"in {_FEWEST // 2} rows or more each: record one cycle more"
         )
-    found = [_mean([turn for turn, run in zip(turns, runs, strict=True) if side[run[0]] == which], span, loop)
+    for part in np.split(way * Q[kept], np.flatnonzero(np.diff(branch)) + 1):
+        if (np.maximum.accumulate(part) - part).max() > max(2 * _SURE * noise[1], _BACK * span):
+            raise InputError(f"{loop.origin}: Q turns back between its least and its largest: {_AMPLITUDE}")
+    found = [_mean([turn for turn, of in zip(turns, sides, strict=True) if of == which], span, loop)
              for which in (-1, 1)]  # fmt: skip
     notes = loop.notes + ((f"left out: {rows[0]} rows before the first turning point",) if rows[0] else ())
-    part = replace(loop, displacement=loop.displacement[kept], Q=Q[kept], time=loop.time[kept], notes=notes)
+    measured = replace(loop, displacement=loop.displacement[kept], Q=Q[kept], time=loop.time[kept], notes=notes)
     values, errors = np.array(found).T
-    return Branches(part, way[kept], values, errors, noise, len(set(rows) - {len(Q) - 1}))
+    return Branches(measured, way, values, errors, noise, len(set(rows) - {len(Q) - 1}))
 
 
 def _scatter(values: Array) -> float:
@@ -211,7 +215,7 @@ def _turn(loop: MeasuredLoop, rows: Indices, side: int, noise: float) -> tuple[i
     far = np.flatnonzero(side * (loop.Q - middle) < 0)
     at_end = not (len(far) and far[0] < rows[0] and far[-1] > rows[-1])
     gap = not len(near) or np.diff(time).max(initial=0) > _GAP * np.median(np.diff(loop.time))
-    return int(rows[min(int(np.searchsorted(t, at)), len(t) - 1)]), np.nan if at_end or gap else float(value), error
+    return int(rows[0] + np.searchsorted(t, at, side="right") - 1), np.nan if at_end or gap else float(value), error
 
 
 def _mean(turns: list[tuple[int, float, float]], span: float, loop: MeasuredLoop) -> tuple[float, float]:
@@ -225,7 +229,6 @@ def _mean(turns: list[tuple[int, float, float]], span: float, loop: MeasuredLoop
     mean = float(weights @ values / weights.sum())
     if (np.abs(values - mean) > np.maximum(_SURE * errors, _SAME * span)).any():
         raise InputError(
-            f"{loop.origin}: turning points of Q from {values.min():.4g} to {values.max():.4g} N/m: "
-            "must have one amplitude, and a column time where rows are missing: keep cycles of one amplitude"
+            f"{loop.origin}: turning points of Q from {values.min():.4g} to {values.max():.4g} N/m: {_AMPLITUDE}"
         )
     return mean, float(weights.sum() ** -0.5)
