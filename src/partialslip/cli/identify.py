@@ -30,14 +30,18 @@ def add(commands: Commands) -> None:
         "of the scene, for widths Q, too; its f plays no part.",
         examples=[
             "partialslip identify my-scene.toml --from loop.csv",
-            "partialslip identify my-scene.toml --from loop.csv --columns displacement=2,Q=3 --factors 1e-3,100",
+            "partialslip identify my-scene.toml --from loop.csv --columns displacement=2,Q=3",
             "partialslip identify fretting-aluminium --stick-width 9.1e-5 --error 1e-5",
         ],
     )
     add_scene(identify)
     source = identify.add_mutually_exclusive_group(required=True)
-    source.add_argument("--from", dest="loop", metavar="FILE",
-                        help="table with columns displacement, Q per unit depth and, if rows are missing, time")  # fmt: skip
+    source.add_argument(
+        "--from",
+        dest="loop",
+        metavar="FILE",
+        help="table with columns displacement, Q per unit depth and, if rows are missing, time",
+    )
     source.add_argument("--stick-width", metavar="W", help="width of the stick zone, in the scene's unit of length")
     source.add_argument("--slip-scar", metavar="W", help="width of the slip zone; of the wider one under tension")
     identify.add_argument("--error", metavar="E", help="error of the width: half of its interval of 95 %%")

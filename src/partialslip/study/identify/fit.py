@@ -7,8 +7,8 @@ the adhered shear traction has one sign. With turning points Q1 < Q2, compliance
     displacement = d0 + C Q + drift t + G(Q2 - Q1) - G(Q2 - Q)     where Q falls.
 
 d0, C, drift, Q1 and Q2 are nuisance parameters. Both columns have noise: a row weighs 1/(s_d^2 + (C + G')^2 s_Q^2)
-(effective variance: Orear 1982). With S(f) the least sum of squares at f, s^2 = S_min/(n - 6), and t of Student's
-distribution, the interval is S(f) <= S_min + tau t^2 s^2; it is one-sided if it contains f = infinity, no slip. tau, the
+(effective variance: Orear, 1982). With S(f) the least sum of squares at f, s^2 = S_min/(n - 6), and t of Student's
+distribution, the interval is S(f) <= S_min + tau t^2 s^2, and one-sided if it contains f = infinity, no slip. tau, the
 sum of the autocorrelations of the residuals, counts correlated rows as fewer.
 """
 
@@ -31,7 +31,7 @@ from partialslip.tools.arrays import Array, Indices
 from partialslip.tools.errors import InputError
 
 _NEARLY = 1 - 1e-9  # accuracy: Q/(f P) of the largest loop
-_POINTS = 401  # accuracy: of that loop
+_POINTS, _TABLE = 401, 20_001  # accuracy: of that loop, and of the table from it
 _GRID = np.array([*np.arange(10) / 10, 0.95, 0.98, 1.0, 1.02, 1.06, 1.1])  # of S over Q/(f P)
 _WALL = 1e4  # accuracy: residual of Q/(f P) - 1 above sliding, in standard deviations
 _PARAMETERS = 6
@@ -41,6 +41,7 @@ _CORRELATED = 3.0  # accuracy: standard deviations of the first autocorrelation 
 _BACKWARDS = 4.0  # accuracy: standard errors
 _FLAT, _SLIDES = 0.02, 0.25  # limit: of the ranges of Q and displacement: a plateau of sliding
 _BRANCH = 400  # display: points of a branch of the fitted loop
+_AS_GOOD = 1.02  # display: f over that of sliding that says no more
 _RATIO = 2.0  # display: upper over lower limit above which f is hardly told
 
 
@@ -103,8 +104,9 @@ class _Fit:
     def __init__(self, pressed: Contact, A: float, tension: float, branches: Branches, sharp: bool = True) -> None:
         largest = 2 * pressed.P * _NEARLY
         loop = hysteresis(pressed, A, 1.0, largest, tension * largest, _POINTS)
-        self.G = PchipInterpolator(loop.Q[:_POINTS] / (2 * pressed.P), loop.displacement[:_POINTS])
-        self.slope = self.G.derivative()
+        curve = PchipInterpolator(loop.Q[:_POINTS] / largest, loop.displacement[:_POINTS])
+        self._s = np.linspace(0, 1, _TABLE)
+        self._G, self._slope, self._bend = (curve(self._s, order) for order in range(3))
         own = branches.loop
         self.low, self.force = branches.turns[0], float(np.ptp(branches.turns))
         self.P, self.length = pressed.P, float(np.ptp(own.displacement))
@@ -122,25 +124,26 @@ class _Fit:
     def friction(self, u: float) -> float:
         return float(self.force / (2 * self.P * u)) if u > 0 else np.inf
 
-    def slipped(self, change: Array, u: float) -> tuple[Array, Array]:
-        """G and dG/dy at a ``change`` of Q."""
+    def slipped(self, change: Array, u: float) -> tuple[Array, Array, Array]:
+        """G and its first and second derivatives at a ``change`` of Q."""
         if u <= 0:
-            return np.zeros_like(change), np.zeros_like(change)
-        end = self.G.x[-1]
-        s = u * change
-        inside = np.clip(s, 0, end)
-        slope = self.slope(inside)
-        G = self.G(inside) + slope * np.maximum(s - end, 0)
-        scale = self.friction(u) / self.length
-        return scale * G, scale * u * slope
+            return 0 * change, 0 * change, 0 * change
+        s, scale = u * change, self.friction(u) / self.length
+        G, slope, bend = (np.interp(s, self._s, of) for of in (self._G, self._slope, self._bend))
+        return scale * (G + slope * np.maximum(s - 1, 0)), scale * u * slope, scale * u**2 * bend * (s < 1)
 
-    def model(self, at: Array, u: float) -> tuple[Array, Array]:
-        """Displacement (n,) and its slope along a branch."""
+    def model(self, at: Array, u: float) -> tuple[Array, Array, Array, Array]:
+        """Displacement (n,) and its slope along a branch, and the derivatives of both by ``at``, (5, n)."""
         start, compliance, drift, low, high = at
-        G, slope = self.slipped(np.where(self.rises, self.y - low, high - self.y), u)
-        whole = self.slipped(np.array(high - low), u)[0]
-        model = start + compliance * self.y + drift * self.t + np.where(self.rises, G, whole - G)
-        return model, compliance + slope
+        whole = high - low
+        reach = np.append(np.where(self.rises, self.y - low, high - self.y), whole)
+        G, slope, bend = self.slipped(reach, u)
+        (G, Gs), (slope, slopes), bend = (G[:-1], G[-1]), (slope[:-1], slope[-1]), bend[:-1]
+        model = start + compliance * self.y + drift * self.t + np.where(self.rises, G, Gs - G)
+        one, no = np.ones_like(self.y), 0 * self.y
+        by_turns = -np.where(self.rises, slope, slopes), np.where(self.rises, 0, slopes - slope)
+        bent = -bend * self.rises, bend * ~self.rises
+        return model, compliance + slope, np.array([one, self.y, self.t, *by_turns]), np.array([no, one, no, *bent])
 
     def closed(self, at: Array) -> tuple[Array, Array]:
         """Q (N/m) and displacement (m) of the fitted loop without drift, (2 k,): k points up, k down."""
@@ -152,13 +155,22 @@ class _Fit:
         return self.low + self.force * (low + way), self.length * (at[0] + at[1] * (low + way) + G)
 
     def residuals(self, at: Array, u: float) -> Array:
-        model, slope = self.model(at, u)
+        model, slope, _, _ = self.model(at, u)
         rows = (self.d - model) / np.hypot(self.noise[0], slope * self.noise[1])
-        turns = (at[3:] - (0, 1)) / self.turns_error
-        return np.concatenate([rows, turns, [_WALL * max(u * (at[4] - at[3]) - 1, 0)]])
+        return np.concatenate([rows, (at[3:] - (0, 1)) / self.turns_error, [_WALL * max(u * (at[4] - at[3]) - 1, 0)]])
+
+    def jacobian(self, at: Array, u: float) -> Array:
+        """Derivatives of the residuals, (n + 3, 5)."""
+        model, slope, models, slopes = self.model(at, u)
+        variance = self.noise[0] ** 2 + (slope * self.noise[1]) ** 2
+        rows = -(models + (self.d - model) * slope * self.noise[1] ** 2 / variance * slopes) / np.sqrt(variance)
+        turns = np.zeros((5, 3))
+        turns[[3, 4], [0, 1]] = 1 / self.turns_error
+        turns[3:, 2] = _WALL * u * np.array([-1, 1]) * (u * (at[4] - at[3]) > 1)
+        return np.concatenate([rows, turns], axis=1).T
 
     def solve(self, u: float) -> _Solved:
-        found = least_squares(self.residuals, self._start, method="lm", args=(u,), xtol=1e-9, ftol=1e-10)
+        found = least_squares(self.residuals, self._start, self.jacobian, method="lm", args=(u,), xtol=1e-7, ftol=1e-9)
         self._start = found.x  # near that of the next u
         return _Solved(found.x, 2 * float(found.cost), found.fun, found.jac)
 
@@ -225,24 +237,24 @@ def from_loop(scene: Scene, loop: MeasuredLoop) -> Identified:
                     "like friction elsewhere: slip in a fixture, a time lag between the columns.",)  # fmt: skip
     unit = tau * variance * float(student.ppf((1 + LEVEL) / 2, max(len(rows) / tau - _PARAMETERS, 1))) ** 2
     low, high = fit.limits(found.S + unit)
-    f = Interval(fit.friction(fit.best), max(fit.friction(high), _sliding(found, fit)), fit.friction(low))
-    remarks += _said(f, fit, found, high)
-    start = branches.loop.displacement[0]
-    moved, Q = start + fit.length * fit.d, fit.low + fit.force * fit.y
-    fitted_rows = replace(branches.loop, displacement=moved, Q=Q, time=fit.time)
-    fitted = start + fit.length * fit.model(found.at, fit.best)[0]
-    Q, moved = fit.closed(found.at)
+    f = Interval(fit.friction(fit.best if low else 0.0), fit.friction(high), fit.friction(low))
+    remarks += _said(f, float(np.ptp(found.at[3:])) * fit.force / (2 * pressed.P))
+    start, (Q, moved) = branches.loop.displacement[0], fit.closed(found.at)
     wide = moved[: _BRANCH - 1 : -1] - moved[:_BRANCH]
+    rows_fitted = replace(
+        branches.loop, displacement=start + fit.length * fit.d, Q=fit.low + fit.force * fit.y, time=fit.time
+    )
+    fitted = start + fit.length * fit.model(found.at, fit.best)[0]
     return Identified(
         f,
         _stiffness(fit, found, (low, high), unit),
         float(np.trapezoid(wide, Q[:_BRANCH])),
         float(wide.max()),
-        float(np.std(fitted - fitted_rows.displacement)),
+        float(np.std(fitted - rows_fitted.displacement)),
         (float(Q[0]), float(Q[_BRANCH])),
         tau,
         pressed.P,
-        fitted_rows,
+        rows_fitted,
         fitted,
         found.at[2] * fit.t * fit.length,
         np.array([start + moved, Q]),
@@ -298,21 +310,13 @@ def _require_friction(fit: _Fit, origin: str) -> None:
                          "displacement of one sign")  # fmt: skip
 
 
-def _sliding(found: _Solved, fit: _Fit) -> float:
-    """f at which the fitted loop would slide."""
-    return float(np.ptp(found.at[3:])) * fit.force / (2 * fit.P)
-
-
-def _said(f: Interval, fit: _Fit, found: _Solved, high: float) -> tuple[str, ...]:
-    """What a reader must know of ``f``."""
-    remarks: tuple[str, ...] = ()
-    if np.isinf(f.high):
-        remarks = (f"The loop does not tell f: one without slip fits as well. f is at least {f.low:.3g}.",)
-        if high >= _GRID[-1] or f.low <= _sliding(found, fit) * (1 + 1e-6):
-            remarks += ("That is Q/P, as the contact does not slide: the loop tells no more.",)
-    elif f.high > _RATIO * f.low:
-        remarks = ("The loop hardly tells f: a loop nearer to sliding, less noise or more cycles tell more.",)
-    return remarks
+def _said(f: Interval, sliding: float) -> tuple[str, ...]:
+    """What a reader must know of ``f``; the loop slides at the f ``sliding``."""
+    if f.one_sided:
+        more = ", Q/P, as the contact does not slide" if f.low < _AS_GOOD * sliding else ""
+        return (f"The loop does not tell f: one without slip fits as well. f is at least {f.low:.3g}{more}.",)
+    hardly = "The loop hardly tells f: a loop nearer to sliding, less noise or more cycles tell more."
+    return (hardly,) if f.high > _RATIO * f.low else ()
 
 
 def _stiffness(fit: _Fit, found: _Solved, limits: tuple[float, float], unit: float) -> Interval:

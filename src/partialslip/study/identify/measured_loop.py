@@ -106,10 +106,9 @@ def read_loop(
     for (name, of), factor in zip(_DIMENSIONS.items(), factors, strict=True):
         heading = table.names[places[name]]
         if dimension_of(heading) not in (None, of) or (unknown_unit(heading) and factor == 1):
-            allowed = "per unit depth, N/m or N/mm" if name == "Q" else "a length, as mm or um"
-            raise InputError(
-                f"{origin}: column {heading!r}: must be {allowed}, or give the unit's size by --factors DISPLACEMENT,Q"
-            )
+            must = "per unit depth, in N/m or N/mm" if name == "Q" else "a length, in m, mm or um"
+            size = ", or give the size of its unit by --factors D,Q" if unknown_unit(heading) else ""
+            raise InputError(f"{origin}: column {heading!r}: must be {must}{size}")
         stated = split_unit(heading)[1]
         own = numbers[name][known]
         values[name] = factor * (own * stated if stated else units.to_si(own, of))
