@@ -29,7 +29,9 @@ def interval_row(name: str, of: Interval, source: str, unit: float = 1.0, label:
     wide = min((abs(end - value) for end in (low, high) if np.isfinite(end) and np.isfinite(value)), default=0)
     size = value if np.isfinite(value) else low
     digits = 3 if not wide else int(np.clip(np.ceil(np.log10(size / wide)) + 1, 2, 7))
-    value_text, low_text, high_text = (f"{each:.{digits}g} {label}".strip() for each in (value, low, high))
+    value_text, low_text, high_text = (
+        f"{each:#.{digits}g}".rstrip(".") + f" {label}" * bool(label) for each in (value, low, high)
+    )
     if of.one_sided:
         return name, "not told", f"at least {low_text}", source
     return name, value_text, "not known" if np.isnan(low) else f"{low_text} to {high_text}", source
@@ -37,16 +39,15 @@ def interval_row(name: str, of: Interval, source: str, unit: float = 1.0, label:
 
 def loop_rows(found: Identified, units: Units, stiffness: bool) -> list[tuple[str, ...]]:
     """Rows of the table of a loop; with the ``stiffness`` if it is asked for."""
-    rows = [interval_row("f", found.f, f"{len(found.fitted)} rows or means of rows of {found.loop.origin}")]
+    rows = [interval_row("f", found.f, f"{len(found.fitted)} rows, or means of rows")]
     if stiffness:
         power, label = scale(found.stiffness.value, "Pa", units)
-        source = "slope while all sticks: rig and bodies in series, per unit depth"
-        rows.append(interval_row("stiffness", found.stiffness, source, 10.0**power, label))
+        rows.append(interval_row("stiffness", found.stiffness, "all in series, per depth", 10.0**power, label))
     length, moved = units.text(found.scatter, "m", 2), units.text(found.opening, "m", 3)
     return [
         *rows,
-        ("work of Q in a cycle", units.text(found.area, "J/m", 3), "", "area of the fitted loop"),
-        ("width of the loop", moved, "", f"along the displacement, at most; rows scatter by {length}"),
+        ("work of Q in a cycle", units.text(found.area, "J/m", 3), "", "area of the loop"),
+        ("width of the loop", moved, "", f"rows scatter by {length}"),
     ]
 
 
