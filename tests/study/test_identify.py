@@ -71,6 +71,14 @@ def test_f_is_in_its_interval_in_95_of_100_loops():
     assert inside >= 36
 
 
+@pytest.mark.parametrize("more", [{"count": 20, "cycles": 1.0, "begin": 0.5}, {"used": 0.995}, {"used": 0.2}])
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+def test_short_loops_and_loops_near_sliding(more, noise):
+    loop = made(3, noise=noise, **more)
+    of = found(loop).f
+    assert of.low <= loop.f <= of.high
+
+
 def test_a_loop_without_slip_gives_a_lower_bound():
     loop = made(4, used=0.04)
     of = found(loop)
@@ -153,6 +161,10 @@ LOOP = made(9, cycles=5.0, count=50)
         ({"Q": LOOP.Q[::-1], "displacement": LOOP.displacement[::-1]}, "the loop runs backwards"),
         ({"Q": np.clip(LOOP.Q - LOOP.Q.mean(), -1e4, 1e4)}, "the contact slides there, and f is about 0.073"),
         ({"Q": LOOP.Q * np.linspace(1, 0.5, len(LOOP.Q))}, "must have one amplitude"),
+        (
+            {"displacement": LOOP.displacement + 2e-6 * (np.arange(len(LOOP.Q)) == 100)},
+            "the row at time 2 is off the loop by",
+        ),
         ({"Q": np.sort(LOOP.Q), "displacement": np.sort(LOOP.displacement)}, "Q must rise and fall"),
     ],
 )

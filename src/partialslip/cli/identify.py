@@ -90,15 +90,17 @@ def _identify(options: argparse.Namespace) -> int:
             f, remarks = from_width(scene, units.to_si(width, "m"), error, option == "--slip-scar")
         rows = [shown.interval_row("f", f, f"{option[2:]} of {width:g} {units.label('m')}")]
         record = shown.record(f, option[2:], remarks)
-    exact = "P, profile and material of the scene count as exact."
+    remarks += ("P, profile and material of the scene count as exact.",)
+    if options.loop is not None:
+        remarks += ("Not told apart: what acts like friction elsewhere, as a fixture that slips, or columns that lag.",)
     figure = texts.get("identify.svg", "")
     caption = "Dots: measured. Line: fitted. Both without drift." if figure else ""
 
     def find(folder: Path) -> Findings:
         files = write_texts(folder, {"identify.json": json_text(record), **texts})
         table = Section("Coefficient of friction", (), figure, caption, shown.HEADINGS, rows, shown.WORDS)
-        sections = [table, Section("Notes", [*remarks, exact])]
-        printed: list[str | Section] = [replace(table, title=""), *remarks, exact]
+        sections = [table, Section("Notes", remarks)]
+        printed: list[str | Section] = [replace(table, title=""), *remarks]
         return Findings(files, f"{scene.name}: coefficient of friction", printed, f"{scene.name}: f", sections)
 
     given = {} if options.loop is None else {"loop": Path(options.loop)}

@@ -34,7 +34,7 @@ _NEARLY = 1 - 1e-9  # accuracy: Q/(f P) of the largest loop
 _POINTS, _TABLE = 401, 20_001  # accuracy: of that loop, and of the table from it
 _GRID = np.array([*np.arange(10) / 10, 0.95, 0.98, 1.0, 1.02, 1.06, 1.1])  # of S over Q/(f P)
 _WALL = 1e4  # accuracy: residual of Q/(f P) - 1 above sliding, in standard deviations
-_PARAMETERS = 6
+_PARAMETERS = 6  # fixed: d0, C, drift, Q1, Q2 and f
 _LEAST = 1e-7  # accuracy: of the range: least noise
 _PULL = 14.0  # accuracy: chi^2 of two turning points above which rows are missing there: 1 in 1000
 _CORRELATED = 3.0  # accuracy: standard deviations of the first autocorrelation of white noise
@@ -42,6 +42,8 @@ _BACKWARDS = 4.0  # accuracy: standard errors
 _FLAT, _SLIDES = 0.02, 0.25  # limit: of the ranges of Q and displacement: a plateau of sliding
 _BRANCH = 400  # display: points of a branch of the fitted loop
 _AS_GOOD = 1.02  # display: f over that of sliding that says no more
+_SEARCH = 1e-4  # accuracy: relative, of f
+_OUTLIER, _FAR = 8.0, 0.05  # limit: standard deviations, and range of the displacement, by which no row may be off
 _RATIO = 2.0  # display: upper over lower limit above which f is hardly told
 
 
@@ -192,15 +194,16 @@ class _Fit:
     def limits(self, most: float) -> tuple[float, float]:
         """Least and largest u with S <= ``most``: 0 and the largest of the grid where S is that small there."""
 
-        def over(u: float) -> float:
-            return self.solve(u).S - most
+        def crossing(outside: Array) -> float:
+            ends = outside[0], self.best
+            above = [most < self.solve(u).S for u in ends]
+            if above != [True, False]:  # another minimum at the same u
+                return float(ends[0])
+            return float(brentq(lambda u: self.solve(u).S - most, *ends, xtol=1e-5))
 
         inside = np.array(self.grid) <= most
-        below = _GRID[(self.best > _GRID) & ~inside]
-        above = _GRID[(self.best < _GRID) & ~inside]
-        low = brentq(over, below[-1], self.best, xtol=1e-5) if len(below) else 0.0
-        high = brentq(over, self.best, above[0], xtol=1e-5) if len(above) else float(_GRID[-1])
-        return low, high
+        below, above = (_GRID[(way * (_GRID - self.best) > 0) & ~inside][::way] for way in (-1, 1))
+        return crossing(below) if len(below) else 0.0, crossing(above) if len(above) else float(_GRID[-1])
 
 
 def from_loop(scene: Scene, loop: MeasuredLoop) -> Identified:
@@ -229,15 +232,17 @@ def from_loop(scene: Scene, loop: MeasuredLoop) -> Identified:
         remarks += ("The rows near the turning points of Q do not fit the loop: are rows missing there? The fit finds "
                     "the turning points.",)  # fmt: skip
     rows = found.residuals[:-3]
+    _require_data(fit, found, loop.origin)
     variance, tau = found.S / spare, _correlation(rows)
     correlated = _first_autocorrelation(rows) > _CORRELATED / np.sqrt(len(rows))
     if correlated:  # an error of the model repeats in each cycle
         tau *= max(branches.halves / 2, 1)
-        remarks += (f"The residuals are correlated: {tau:.0f} rows count as one. The interval does not cover what acts "
-                    "like friction elsewhere: slip in a fixture, a time lag between the columns.",)  # fmt: skip
+        remarks += (f"The residuals are correlated: {tau:.0f} rows count as one.",)
     unit = tau * variance * float(student.ppf((1 + LEVEL) / 2, max(len(rows) / tau - _PARAMETERS, 1))) ** 2
     low, high = fit.limits(found.S + unit)
-    f = Interval(fit.friction(fit.best if low else 0.0), fit.friction(high), fit.friction(low))
+    value = fit.friction(fit.best if low else 0.0)
+    lowest, highest = min(fit.friction(high), value * (1 - _SEARCH)), max(fit.friction(low), value * (1 + _SEARCH))
+    f = Interval(value, lowest, highest)
     remarks += _said(f, float(np.ptp(found.at[3:])) * fit.force / (2 * pressed.P))
     start, (Q, moved) = branches.loop.displacement[0], fit.closed(found.at)
     wide = moved[: _BRANCH - 1 : -1] - moved[:_BRANCH]
@@ -308,6 +313,15 @@ def _require_friction(fit: _Fit, origin: str) -> None:
     if wide < -_BACKWARDS * np.std(rest) * np.sqrt(_correlation(rest) / (opening @ opening)):
         raise InputError(f"{origin}: the loop runs backwards, Q gains energy: must be in the order of time, and Q and "
                          "displacement of one sign")  # fmt: skip
+
+
+def _require_data(fit: _Fit, found: _Solved, origin: str) -> None:
+    """Raise InputError if a row is far off all others."""
+    rows = np.abs(found.residuals[:-3])
+    off, worst = np.abs(fit.d - fit.model(found.at, fit.best)[0]), int(rows.argmax())
+    if rows[worst] > _OUTLIER * 1.4826 * np.median(rows) and off[worst] > _FAR:
+        raise InputError(f"{origin}: the row at time {fit.time[worst]:.6g} is off the loop by {off[worst]:.0%} of the "
+                         "displacement's range: take rows out that are no data")  # fmt: skip
 
 
 def _said(f: Interval, sliding: float) -> tuple[str, ...]:

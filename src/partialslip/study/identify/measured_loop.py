@@ -168,8 +168,8 @@ def branches_of(loop: MeasuredLoop) -> Branches:
     sides = [int(side[run[0]]) for run in runs]
     turns = [_turn(loop, np.arange(run[0], run[-1] + 1), of, noise[1]) for run, of in zip(runs, sides, strict=True)]
     rows = [row for row, _, _ in turns]
-    kept = np.arange(rows[0], len(Q))
-    branch = np.maximum(np.searchsorted(rows, kept) - 1, 0)
+    kept = np.arange(rows[0] + 1, len(Q))
+    branch = np.searchsorted(rows, kept) - 1
     way = -np.array(sides)[branch]
     if min(np.count_nonzero(way == 1), np.count_nonzero(way == -1)) < _FEWEST / 2:
         raise InputError(
@@ -181,7 +181,7 @@ def branches_of(loop: MeasuredLoop) -> Branches:
             raise InputError(f"{loop.origin}: Q turns back between its least and its largest: {_AMPLITUDE}")
     found = [_mean([turn for turn, of in zip(turns, sides, strict=True) if of == which], span, loop)
              for which in (-1, 1)]  # fmt: skip
-    notes = loop.notes + ((f"left out: {rows[0]} rows before the first turning point",) if rows[0] else ())
+    notes = loop.notes + ((f"left out: {kept[0]} rows up to the first turning point",) if rows[0] > 0 else ())
     measured = replace(loop, displacement=loop.displacement[kept], Q=Q[kept], time=loop.time[kept], notes=notes)
     values, errors = np.array(found).T
     return Branches(measured, way, values, errors, noise, len(set(rows) - {len(Q) - 1}))

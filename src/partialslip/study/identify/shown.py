@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "partialslip/identify/1"
 HEADINGS = ("quantity", "value", "95 % interval", "from")
-WORDS = (1, 2, 3)
+WORDS = (1, 2, 3)  # display: columns of words
 _SIZE = 6.4, 3.2  # display: inches
 _DOTS = 400  # display: most rows that are drawn
 _TICKS = 4  # display: most intervals of an axis
