@@ -11,7 +11,20 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import partialslip
-from partialslip.cli import benchmark, completion, equivalent, export, fatigue, maps, page, run, score, study, verify
+from partialslip.cli import (
+    benchmark,
+    completion,
+    equivalent,
+    export,
+    fatigue,
+    identify,
+    maps,
+    page,
+    run,
+    score,
+    study,
+    verify,
+)
 from partialslip.cli.ending import ended
 from partialslip.tools.errors import InputError
 
@@ -116,7 +129,7 @@ def parser() -> argparse.ArgumentParser:
     root.add_argument("--version", action="version")  # of _Parser.version
     commands = root.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
 
-    for command in (run, maps, page, equivalent, fatigue, verify, study, score, export, benchmark):
+    for command in (run, maps, page, equivalent, fatigue, identify, verify, study, score, export, benchmark):
         command.add(commands)
 
     scenes = commands.add_parser(
