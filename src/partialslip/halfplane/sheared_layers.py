@@ -149,7 +149,9 @@ class InLayers(Loading):
         e, c = self._middle
         x = e + c * POINTS
         half, p = self.traction(x) / 2, self.shape.pressure(x)
-        most = np.max([np.abs(stage.traction(x) - half) for stage in self._stages], axis=0)
+        # under shear alone the traction where points stick only grows
+        stages = [self] if self.sf == 0 and self.shape.even else self._stages
+        most = np.max([np.abs(stage.traction(x) - half) for stage in stages], axis=0)
         weights = c * np.pi / (2 * COUNT + 1) * np.sqrt(1 - POINTS**2)
         return max(float(weights @ (p - most)) * 2 / math.pi, 0.0)
 
@@ -195,13 +197,15 @@ def in_layers(
     from scipy.optimize import root  # takes long to import
 
     begin = target if near is None else np.array([_stretched(near[0]), near[1]])
-    solved = root(off, begin / scale, method="hybr", options={"xtol": _SETTLED})
-    if not np.abs(off(solved.x)).max() < _HELD:
-        raise InputError(UNEVEN_FRICTION)
+    # loads of half-planes nearly are those of layers: the Jacobian begins as 1
+    solved = root(off, begin / scale, jac=lambda _: np.eye(2), method="hybr", options={"xtol": _SETTLED})
     at = below(solved.x)
+    series, Qf, sf = _solved(pressed, at)
+    if not np.abs((np.array([_stretched(Qf), sf]) - target) / scale).max() < _HELD:
+        raise InputError(UNEVEN_FRICTION)
     own = {each.name: getattr(wanted, each.name) for each in fields(Loading)}
     turned = at.zone._replace(centre=at.mirror * wanted.mirror * at.zone.centre)
-    found = InLayers(**{**own, "zone": turned}, below=at, series=trimmed(_solved(pressed, at)[0]), contact=pressed)
+    found = InLayers(**{**own, "zone": turned}, below=at, series=trimmed(series), contact=pressed)
     _check(found)
     return found
 
