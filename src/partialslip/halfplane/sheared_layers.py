@@ -50,22 +50,20 @@ class InLayers(Loading):
     @property
     def _middle(self) -> tuple[float, float]:
         """Middle and half-width of the stick zone, for the signs of the loads."""
-        left, right = self.below.ends
-        return (left + right) / 2, (right - left) / 2
+        return _middle(self.below)
 
     def traction(self, x: Array) -> Array:
         return self.below.traction(x) - self.bound * _added(self, x)
 
     @cached_property
     def forces(self) -> tuple[Array, Array]:
-        """Places (n,), m, from the middle of the contact, and forces (n,) there, in f p0 m, of the traction over its
-        bound."""
+        """Places (n,), m, and forces (n,) there, in f p0 m, of the traction over its bound."""
         x, weights = _rule(self.below)
         e, c = self._middle
         a = self.contact.a
         of_series = -a * c * (self.series[1:] @ FORCES[: len(self.series) - 1])
         of_below = a * weights * self.below.traction(x) / self.bound
-        return a * np.append(x, e + c * POINTS), np.append(of_below, of_series)
+        return self.contact.places(np.append(x, e + c * POINTS)), np.append(of_below, of_series)
 
     def slip(self, x: Array) -> Array:
         """Slip at ``x``, in A f p0 a: its slope beyond the stick zone is what the strain of the layers leaves of the
@@ -82,7 +80,7 @@ class InLayers(Loading):
                 self.series * np.float64(side) ** np.arange(1, len(self.series) + 1) @ _integrals(eta, len(self.series))
             )
             end = e + side * c
-            moved = layer.stretch(a * np.append(end, x[here]), at, forces) / a
+            moved = layer.stretch(self.contact.places(np.append(end, x[here])), at, forces) / a
             result[here] += self.bound * (moved[1:] - moved[0] - c * of_series)
         return result
 
@@ -224,6 +222,11 @@ def _check(found: InLayers) -> None:
         raise InputError(UNEVEN_FRICTION)
 
 
+def _middle(below: Loading) -> tuple[float, float]:
+    """Middle and half-width, which keeps its digits where it is small, of the stick zone of ``below``."""
+    return sum(below.ends) / 2, below.zone.half_width
+
+
 def _rule(below: Loading) -> tuple[Array, Array]:
     """Points and weights of quadrature over the contact."""
     return rule_over(np.unique(np.clip([-1.0, *below.shape.kinks, *below.ends, 1.0], -1, 1)))
@@ -231,12 +234,11 @@ def _rule(below: Loading) -> tuple[Array, Array]:
 
 def _solved(pressed: Contact, below: Loading) -> tuple[Array, float, float]:
     """The series s (k,) with the stick zone of the half-planes ``below``, and the loads Qf and sf, with their signs."""
-    layer, a, (left, right) = pressed.layer, pressed.a, below.ends
+    layer, a, (e, c) = pressed.layer, pressed.a, _middle(below)
     assert layer
     x, weights = _rule(below)
-    e, c = (left + right) / 2, (right - left) / 2
-    at, inner = a * (e + c * NODES), a * (e + c * POINTS)
-    given = TO_SERIES @ layer.smooth("shear", at, a * x, a * weights * below.traction(x) / below.bound)
+    at, inner, x_rule = (pressed.places(each) for each in (e + c * NODES, e + c * POINTS, x))
+    given = TO_SERIES @ layer.smooth("shear", at, x_rule, a * weights * below.traction(x) / below.bound)
     own = TO_SERIES @ layer.smooth("shear", at, inner, a * c * FORCES).T
     series = np.linalg.solve(np.eye(COUNT) + own[1:], given[1:])
     first = float(given[0] - own[0] @ series)
