@@ -76,7 +76,7 @@ def main():
         errors = (f"{key} {found.errors[key] or 0:.1e} ({told.get(key, np.nan):.1e})" for key in KEYS)
         size = f"h/a {body.height / exact.a:.2f} W/h {body.width / body.height:.1f}"
         seconds = f"{middle - start:.1f} + {time.process_time() - middle:.1f} s"
-        print(f"{seed}: {PROFILES[seed % 4]}, {exact.regime}, {size}: {', '.join(errors)}; {seconds}; {found.conclusion.text}", flush=True)
+        print(f"{seed}: {PROFILES[seed % 4]}, {exact.regime}, {size}: {', '.join(errors)}; {seconds}", flush=True)
 
 
 if __name__ == "__main__":

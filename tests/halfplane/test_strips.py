@@ -109,7 +109,7 @@ def strain(kernel, h, x, values, ends, held=0.0):
     return (singular + layers.smooth(kernel, h, x, t) @ (weights * at_t)) / np.pi + held * (at_t * t) @ weights
 
 
-@pytest.mark.parametrize("profile", ["hertz", "flat", "uneven"])
+@pytest.mark.parametrize("profile", ["hertz", "flat", pytest.param("uneven", marks=pytest.mark.slow)])
 def test_the_gap_closes_and_the_stick_zone_moves_as_one(profile):
     """Both integral equations, of strips held on their sides, too; the slip is the integral of the strain beyond."""
     h, sigma, width = 0.25e-3, 40e6, 10e-3
@@ -144,7 +144,10 @@ def test_the_gap_closes_and_the_stick_zone_moves_as_one(profile):
 
 def test_far_backs_are_half_planes():
     for sigma in (0.0, 80e6):
-        far, half_planes = solved(strips(1e3, sigma=sigma)), solved(plain({"P": P, "Q": [-30e3, 30e3], "sigma": [-sigma, sigma]}))
+        far, half_planes = (
+            solved(strips(1e3, sigma=sigma)),
+            solved(plain({"P": P, "Q": [-30e3, 30e3], "sigma": [-sigma, sigma]})),
+        )
         assert far.a == pytest.approx(half_planes.a, rel=1e-14)
         assert (far.m, far.n) == pytest.approx((half_planes.m, half_planes.n), rel=1e-12)
     near = contact(strips(20e-3))
@@ -188,12 +191,17 @@ def test_stresses_inside():
         traction = found.traction.at(x)
         for k, q in enumerate((traction.q1, traction.q2)):
             assert at[k, 1] == pytest.approx(-traction.p, rel=2e-2, abs=2e-2 * found.p0)
-            assert at[k, 2] == pytest.approx(way * 0 + at[k, 2], abs=1) and np.abs(np.abs(at[k, 2]) - np.abs(q)).max() < 5e-3 * found.p0
+            assert (
+                at[k, 2] == pytest.approx(way * 0 + at[k, 2], abs=1)
+                and np.abs(np.abs(at[k, 2]) - np.abs(q)).max() < 5e-3 * found.p0
+            )
         x, y = np.linspace(-3, 3, 9) * h, np.full(9, way * h)
         assert np.abs(found.stress_at(x, y)[:, 2]).max() < 1e-12 * found.p0
         d = 1e-3 * h
         x, y = np.array([-0.7, 0.1, 0.9]) * h, way * np.array([0.3, 0.5, 0.7]) * h
-        east, west, north, south, here = (found.stress_at(x + i * d, y + j * d) for i, j in ((1, 0), (-1, 0), (0, 1), (0, -1), (0, 0)))
+        east, west, north, south, here = (
+            found.stress_at(x + i * d, y + j * d) for i, j in ((1, 0), (-1, 0), (0, 1), (0, -1), (0, 0))
+        )
         scale = found.p0 * 2 * d / h
         assert np.abs(east[:, 0] - west[:, 0] + north[:, 2] - south[:, 2]).max() < 1e-4 * scale
         assert np.abs(east[:, 2] - west[:, 2] + north[:, 1] - south[:, 1]).max() < 1e-4 * scale
@@ -226,8 +234,17 @@ def test_extreme_loads():
     assert np.isfinite(point.traction.at(np.linspace(-1, 1, 21) * point.a).dq).all()
 
 
+def test_what_far_sides_leave_out_is_told():
+    """Nothing of infinite strips; of others the more the nearer the sides are."""
+    assert not solved(strips(1e-3)).estimate
+    told = [solved(strips(1e-3, width=times * 1e-3)).estimate for times in (6, 8, 12)]
+    for key in ("a", "m", "n", "p", "q"):
+        near, middle, far = (each[key] for each in told)
+        assert 1e-4 > near > 50 * middle > 50 * 1000 * far > 0
+
+
 @pytest.mark.fault
-@pytest.mark.parametrize("fault", ["kernels", "held", "first"])
+@pytest.mark.parametrize("fault", ["kernels", pytest.param("held", marks=pytest.mark.slow), "first"])
 def test_faults_show(monkeypatch, fault):
     """Faults: M in place of N and the other way round; twice the strain between held sides; no first term."""
     h, width = 0.25e-3, 10e-3

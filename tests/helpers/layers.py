@@ -1,5 +1,5 @@
-"""Two equal layers on frictionless planes by direct collocation at Chebyshev nodes, and their kernels by the equations of
-equilibrium; a solver of its own, in SI units."""
+"""Two equal layers on frictionless planes by direct collocation at Chebyshev nodes, and their kernels by the equations
+of equilibrium; a solver of its own, in SI units."""
 
 import numpy as np
 from scipy.optimize import root
@@ -15,19 +15,19 @@ _SQUARES = np.pi / (COUNT + 1) * np.sin(_J) ** 2
 
 
 def moved(w, nu, traction):
-    """Displacements (u, v) sin(k x), cos(k x) of the surface of a layer, times k E/(2(1 - nu^2)), under a pressure cos(k
-    x), or a shear sin(k x) along x, by Navier's equations at Chebyshev points over the height w/k."""
+    """Displacements (u, v) sin(k x), cos(k x) of the surface of a layer, times k E/(2(1 - nu^2)), under a pressure
+    cos(k x), or a shear sin(k x) along x, by Navier's equations at Chebyshev points over the height w/k."""
     count = 40
     y = np.cos(np.pi * np.arange(count + 1) / count)
     c = np.where((np.arange(count + 1) % count) == 0, 2.0, 1.0) * (-1.0) ** np.arange(count + 1)
     D = np.outer(c, 1 / c) / (np.subtract.outer(y, y) + np.eye(count + 1))
     D = -(D - np.diag(D.sum(axis=1))) * 2 / w  # derivative by k times the depth w (1 - y)/2
-    mu, I = 1 / (2 * (1 + nu)), np.eye(count + 1)
+    mu, one = 1 / (2 * (1 + nu)), np.eye(count + 1)
     lam = 2 * mu * nu / (1 - 2 * nu)
-    along = np.hstack([mu * D @ D - (lam + 2 * mu) * I, -(lam + mu) * D])
-    across = np.hstack([(lam + mu) * D, (lam + 2 * mu) * D @ D - mu * I])
-    shear, normal = np.hstack([mu * D, -mu * I]), np.hstack([lam * I, (lam + 2 * mu) * D])
-    held = np.hstack([0 * I, I])
+    along = np.hstack([mu * D @ D - (lam + 2 * mu) * one, -(lam + mu) * D])
+    across = np.hstack([(lam + mu) * D, (lam + 2 * mu) * D @ D - mu * one])
+    shear, normal = np.hstack([mu * D, -mu * one]), np.hstack([lam * one, (lam + 2 * mu) * D])
+    held = np.hstack([0 * one, one])
     A = np.vstack([along[1:-1], across[1:-1], shear[[0, -1]], normal[:1], held[-1:]])
     b = np.zeros(2 * count + 2)
     b[-4 if traction == "shear" else -2] = -1.0
@@ -73,7 +73,7 @@ def sheared(a, phi, f, Q, sigma, h, large=0, begin=None):
         y = np.clip(x / a, -1, 1)
         return f(x) * a * np.sqrt((1 - y) * (1 + y)) * interpolated(phi, y)
 
-    def off(unknown, whole=False):
+    def off(unknown):
         e, c = unknown[0] * a, unknown[1] * a
         ends = np.array([-a, e - c, e + c, a])
         t = ((ends[1:] + ends[:-1])[:, None] / 2 + np.diff(ends)[:, None] / 2 * sine).ravel()
@@ -92,8 +92,6 @@ def sheared(a, phi, f, Q, sigma, h, large=0, begin=None):
         K = np.hstack([K, np.full((COUNT + 1, 1), np.pi)])
         star = np.linalg.solve(K / np.pi, -sigma / 4 - given / np.pi)
         total = F @ dt + c**2 * _SQUARES @ star[:-1]
-        if whole:
-            return star[:-1], sign
         return np.array([star[-1] * a / (bound(0.0) * a), (total - Q) / (bound(0.0) * a)])
 
     start = begin if begin is not None else (0.0, 0.5)

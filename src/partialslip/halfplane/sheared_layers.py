@@ -12,7 +12,7 @@ Friction bound and profile come in with H_h alone.
 
 import math
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -183,27 +183,26 @@ def in_layers(
     target = np.array([_stretched(dQ / units[0]), dsigma / units[1]])
     scale = np.array([1.0, max(abs(target[1]), 1.0)])
 
-    def below(unknown: Array) -> Loading:
-        z, sf = unknown * scale
+    @cache  # the solver asks for the first place three times
+    def at(z: float, tension: float) -> tuple[Loading, Array, Array]:
+        """Half-planes, the series, and how far the loads of the layers are off."""
         Qf = math.copysign(-math.expm1(-min(abs(z), _FULL)), z)
-        return in_half_planes(pressed, f, Qf * units[0], sf * units[1], bound=bound)
-
-    def off(unknown: Array) -> Array:
-        _, Qf, sf = _solved(pressed, below(unknown))
-        return (np.array([_stretched(Qf), sf]) - target) / scale
+        below = in_half_planes(pressed, f, Qf * units[0], tension * scale[1] * units[1], bound=bound)
+        series, *loads = _solved(pressed, below)
+        return below, series, (np.array([_stretched(loads[0]), loads[1]]) - target) / scale
 
     from scipy.optimize import root  # takes long to import
 
     begin = target if near is None else np.array([_stretched(near[0]), near[1]])
     # loads of half-planes nearly are those of layers: the Jacobian begins as 1
-    solved = root(off, begin / scale, jac=lambda _: np.eye(2), method="hybr", options={"xtol": _SETTLED})
-    at = below(solved.x)
-    series, Qf, sf = _solved(pressed, at)
-    if not np.abs((np.array([_stretched(Qf), sf]) - target) / scale).max() < _HELD:
+    options = {"xtol": _SETTLED}
+    solved = root(lambda x: at(*x.tolist())[2], begin / scale, jac=lambda _: np.eye(2), method="hybr", options=options)
+    below, series, off = at(*solved.x.tolist())
+    if not np.abs(off).max() < _HELD:
         raise InputError(UNEVEN_FRICTION)
     own = {each.name: getattr(wanted, each.name) for each in fields(Loading)}
-    turned = at.zone._replace(centre=at.mirror * wanted.mirror * at.zone.centre)
-    found = InLayers(**{**own, "zone": turned}, below=at, series=trimmed(series), contact=pressed)
+    turned = below.zone._replace(centre=below.mirror * wanted.mirror * below.zone.centre)
+    found = InLayers(**{**own, "zone": turned}, below=below, series=trimmed(series), contact=pressed)
     _check(found)
     return found
 
