@@ -191,10 +191,7 @@ def test_stresses_inside():
         traction = found.traction.at(x)
         for k, q in enumerate((traction.q1, traction.q2)):
             assert at[k, 1] == pytest.approx(-traction.p, rel=2e-2, abs=2e-2 * found.p0)
-            assert (
-                at[k, 2] == pytest.approx(way * 0 + at[k, 2], abs=1)
-                and np.abs(np.abs(at[k, 2]) - np.abs(q)).max() < 5e-3 * found.p0
-            )
+            assert np.abs(np.abs(at[k, 2]) - np.abs(q)).max() < 5e-3 * found.p0
         x, y = np.linspace(-3, 3, 9) * h, np.full(9, way * h)
         assert np.abs(found.stress_at(x, y)[:, 2]).max() < 1e-12 * found.p0
         d = 1e-3 * h
@@ -208,7 +205,7 @@ def test_stresses_inside():
         mean = sum((each[:, 0] + each[:, 1] for each in (east, west, north, south)), -4 * (here[:, 0] + here[:, 1]))
         assert np.abs(mean).max() < 1e-4 * scale * d / h
         s, w = np.polynomial.legendre.leggauss(40)
-        for side, share in ((-6, 0.5), (6, 0.5)):
+        for side in (-6, 6):
             section = found.stress_at(np.full(40, side * h), way * h * (1 + s) / 2)
             pulled = 1 if way < 0 else 0
             Q = np.array([-20e3, 20e3]) * np.sign(side) * -way * 0.5
@@ -218,7 +215,7 @@ def test_stresses_inside():
 def test_what_is_too_thin_is_refused():
     assert contact(strips(30e-6)).a == pytest.approx(layers.pressed(A, R, P, 30e-6)[0], rel=1e-12)
     for h in (20e-6, 1e-9):
-        with pytest.raises(InputError, match="must be larger, not .* times a, for exact; use fem"):
+        with pytest.raises(InputError, match=r"must be larger, not .* times a, for exact; use fem"):
             contact(strips(h))
 
 
@@ -230,7 +227,8 @@ def test_extreme_loads():
     stuck = solved(strips(1e-3, 1e-6 * limit))
     assert 1 - stuck.stick_half_width / stuck.a == pytest.approx(1e-6 / 2, rel=0.1)
     point = solved(strips(1e-3, sigma=3e10))
-    assert point.stick_half_width < 1e-30 and np.isfinite(point.slip.dissipated)
+    assert point.stick_half_width < 1e-30
+    assert np.isfinite(point.slip.dissipated)
     assert np.isfinite(point.traction.at(np.linspace(-1, 1, 21) * point.a).dq).all()
 
 
@@ -247,7 +245,6 @@ def test_what_far_sides_leave_out_is_told():
 @pytest.mark.parametrize("fault", ["kernels", pytest.param("held", marks=pytest.mark.slow), "first"])
 def test_faults_show(monkeypatch, fault):
     """Faults: M in place of N and the other way round; twice the strain between held sides; no first term."""
-    h, width = 0.25e-3, 10e-3
     if fault == "kernels":
         rest = layer._REST
         monkeypatch.setattr(layer, "_REST", {"normal": rest["shear"], "shear": rest["normal"]})
