@@ -123,12 +123,12 @@ def test_the_gap_closes_and_the_stick_zone_moves_as_one(profile):
     slope = A * strain("M", h, x, lambda t: found.traction.at(t).p, ends)
     step = 1e-8
     wanted = (scene.profile.gap_at(x + step) - scene.profile.gap_at(x - step)) / (2 * step)
-    assert slope == pytest.approx(wanted, abs=2e-7 * A * found.p0)
+    assert slope == pytest.approx(wanted, abs=1e-6 * A * found.p0)
     dq, ends = (lambda t: found.traction.at(t).dq), np.unique([*ends, -found.m, found.n])
     held = 2 / (4 * h * width)
     # change of the strain of the lower strip by tension, 2 sigma (1 - nu^2)/E, is A/2 sigma
     relative = A * (strain("N", h, x, dq, ends, held) + 2 * sigma / 4)
-    assert relative == pytest.approx(0 * x, abs=1e-7 * A * F * found.p0)
+    assert relative == pytest.approx(0 * x, abs=1e-6 * A * F * found.p0)
     pressed, change = exact_method._half_cycle(scene)
     beyond = np.array([0.3, 0.8]) * (right - found.n) + found.n
     t, weights = np.polynomial.legendre.leggauss(30)
