@@ -37,8 +37,8 @@ _REST = {"normal": (_DECAY - 1 - 2 * _W) / _BELOW, "shear": (_DECAY + 1 - 2 * _W
 _ACROSS = 2 * _W / _BELOW
 Along = Literal["normal", "shear"]
 _DECAY_ALONG = 2.1061  # fixed: sinh 2w + 2w has the root 1.1254 + 2.1061i: balanced states decay as exp(-2.1061 x/h)
-# accuracy: what the sides of strips send back, in (a/h)(1 + a/h) exp(-2.1061 W/h): 1.7 to 3 times the most that fem finds
-# at widths of 3 and 4 heights, where it shows
+# accuracy: what the sides of strips send back, in (a/h)(1 + a/h) exp(-2.1061 W/h): 1.7 to 3 times what fem
+# finds at widths of 3 and 4 heights, where it shows
 _SENT_BACK = {"a": 8.0, "m": 16.0, "n": 16.0, "p": 16.0, "q": 30.0}
 
 
