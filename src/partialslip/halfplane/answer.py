@@ -110,6 +110,7 @@ def result_of(scene: Scene, found: Answer, inside: bool, clock: Clock) -> Result
         settings={"model": f"two {bodies}, steady state{varying}"},
         limits=found.limits,
         certificate=found.certificate,
+        estimate=largest.layer.left_out(largest.a) if largest.layer else {},
         surface=along_surface(stress.surface, np.sort([-far, *breaks, far])) if stress else None,
         stress_at=StressAt(stress.inside) if stress else None,
         undetermined=why,

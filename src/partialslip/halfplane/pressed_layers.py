@@ -90,9 +90,11 @@ def trimmed(series: Array) -> Array:
 
 def second_kind(coefficients: Array, x: Array) -> Array:
     """sum c_j U_j(x) of the ``coefficients`` c (k,), of any shape of ``x``, by Clenshaw's rule."""
-    one, two = np.zeros_like(x), np.zeros_like(x)
+    one, two, twice = np.zeros_like(x), np.zeros_like(x), 2 * x
     for coefficient in coefficients[::-1].tolist():
-        one, two = coefficient + 2 * x * one - two, one
+        # two becomes twice * one + coefficient - two, in place
+        np.subtract(twice * one + coefficient, two, out=two)
+        one, two = two, one
     return one
 
 
@@ -118,7 +120,7 @@ def on_layers(layer: Layer, A: float, P: float, press: Callable[[float, float], 
     found = _even(layer, A, P, press) if even else _uneven(layer, A, P, press)
     below, series = found.below, found.series
     if np.abs(series[-4:]).max() > _LOST * (np.abs(series).max() + below.p0):
-        raise InputError(f"bodies: must be higher, not {layer.height / below.a:.2g} times a, for exact; use fem")
+        raise _too_thin(layer, below)
     p0 = 2 * P / (math.pi * below.a)
     return replace(below, P=P, tilt=0.0, shape=OnLayers(below.shape, below.p0 / p0, series / p0), layer=layer)
 
@@ -159,4 +161,12 @@ def _loaded(layer: Layer, A: float, below: "Contact") -> Pressed:
     own = TO_SERIES @ layer.smooth("normal", at, points, below.a * FORCES).T
     series = np.asarray(np.linalg.solve(np.eye(COUNT) + own[1:], -given[1:]), float)
     tilt = A * float(given[0] + own[0] @ series)
-    return Pressed(below, series, below.P + math.pi / 2 * below.a * float(series[0]), tilt)
+    force = below.P + math.pi / 2 * below.a * float(series[0])
+    if not force > 0:
+        raise _too_thin(layer, below)
+    return Pressed(below, series, force, tilt)
+
+
+def _too_thin(layer: Layer, below: "Contact") -> InputError:
+    times = f"{layer.height / below.a:.2g} times a"
+    return InputError(f"bodies.upper.height, bodies.lower.height: must be larger, not {times}, for exact; use fem")

@@ -12,7 +12,7 @@ Friction bound and profile come in with H_h alone.
 
 import math
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -50,22 +50,20 @@ class InLayers(Loading):
     @property
     def _middle(self) -> tuple[float, float]:
         """Middle and half-width of the stick zone, for the signs of the loads."""
-        left, right = self.below.ends
-        return (left + right) / 2, (right - left) / 2
+        return _middle(self.below)
 
     def traction(self, x: Array) -> Array:
         return self.below.traction(x) - self.bound * _added(self, x)
 
     @cached_property
     def forces(self) -> tuple[Array, Array]:
-        """Places (n,), m, from the middle of the contact, and forces (n,) there, in f p0 m, of the traction over its
-        bound."""
+        """Places (n,), m, and forces (n,) there, in f p0 m, of the traction over its bound."""
         x, weights = _rule(self.below)
         e, c = self._middle
         a = self.contact.a
         of_series = -a * c * (self.series[1:] @ FORCES[: len(self.series) - 1])
         of_below = a * weights * self.below.traction(x) / self.bound
-        return a * np.append(x, e + c * POINTS), np.append(of_below, of_series)
+        return self.contact.places(np.append(x, e + c * POINTS)), np.append(of_below, of_series)
 
     def slip(self, x: Array) -> Array:
         """Slip at ``x``, in A f p0 a: its slope beyond the stick zone is what the strain of the layers leaves of the
@@ -82,7 +80,7 @@ class InLayers(Loading):
                 self.series * np.float64(side) ** np.arange(1, len(self.series) + 1) @ _integrals(eta, len(self.series))
             )
             end = e + side * c
-            moved = layer.stretch(a * np.append(end, x[here]), at, forces) / a
+            moved = layer.stretch(self.contact.places(np.append(end, x[here])), at, forces) / a
             result[here] += self.bound * (moved[1:] - moved[0] - c * of_series)
         return result
 
@@ -149,7 +147,9 @@ class InLayers(Loading):
         e, c = self._middle
         x = e + c * POINTS
         half, p = self.traction(x) / 2, self.shape.pressure(x)
-        most = np.max([np.abs(stage.traction(x) - half) for stage in self._stages], axis=0)
+        # under shear alone the traction where points stick only grows
+        stages = [self] if self.sf == 0 and self.shape.even else self._stages
+        most = np.max([np.abs(stage.traction(x) - half) for stage in stages], axis=0)
         weights = c * np.pi / (2 * COUNT + 1) * np.sqrt(1 - POINTS**2)
         return max(float(weights @ (p - most)) * 2 / math.pi, 0.0)
 
@@ -183,25 +183,26 @@ def in_layers(
     target = np.array([_stretched(dQ / units[0]), dsigma / units[1]])
     scale = np.array([1.0, max(abs(target[1]), 1.0)])
 
-    def below(unknown: Array) -> Loading:
-        z, sf = unknown * scale
+    @cache  # the solver asks for the first place three times
+    def at(z: float, tension: float) -> tuple[Loading, Array, Array]:
+        """Half-planes, the series, and how far the loads of the layers are off."""
         Qf = math.copysign(-math.expm1(-min(abs(z), _FULL)), z)
-        return in_half_planes(pressed, f, Qf * units[0], sf * units[1], bound=bound)
-
-    def off(unknown: Array) -> Array:
-        _, Qf, sf = _solved(pressed, below(unknown))
-        return (np.array([_stretched(Qf), sf]) - target) / scale
+        below = in_half_planes(pressed, f, Qf * units[0], tension * scale[1] * units[1], bound=bound)
+        series, *loads = _solved(pressed, below)
+        return below, series, (np.array([_stretched(loads[0]), loads[1]]) - target) / scale
 
     from scipy.optimize import root  # takes long to import
 
     begin = target if near is None else np.array([_stretched(near[0]), near[1]])
-    solved = root(off, begin / scale, method="hybr", options={"xtol": _SETTLED})
-    if not np.abs(off(solved.x)).max() < _HELD:
+    # loads of half-planes nearly are those of layers: the Jacobian begins as 1
+    options = {"xtol": _SETTLED}
+    solved = root(lambda x: at(*x.tolist())[2], begin / scale, jac=lambda _: np.eye(2), method="hybr", options=options)
+    below, series, off = at(*solved.x.tolist())
+    if not np.abs(off).max() < _HELD:
         raise InputError(UNEVEN_FRICTION)
-    at = below(solved.x)
     own = {each.name: getattr(wanted, each.name) for each in fields(Loading)}
-    turned = at.zone._replace(centre=at.mirror * wanted.mirror * at.zone.centre)
-    found = InLayers(**{**own, "zone": turned}, below=at, series=trimmed(_solved(pressed, at)[0]), contact=pressed)
+    turned = below.zone._replace(centre=below.mirror * wanted.mirror * below.zone.centre)
+    found = InLayers(**{**own, "zone": turned}, below=below, series=trimmed(series), contact=pressed)
     _check(found)
     return found
 
@@ -220,6 +221,11 @@ def _check(found: InLayers) -> None:
         raise InputError(UNEVEN_FRICTION)
 
 
+def _middle(below: Loading) -> tuple[float, float]:
+    """Middle and half-width, which keeps its digits where it is small, of the stick zone of ``below``."""
+    return sum(below.ends) / 2, below.zone.half_width
+
+
 def _rule(below: Loading) -> tuple[Array, Array]:
     """Points and weights of quadrature over the contact."""
     return rule_over(np.unique(np.clip([-1.0, *below.shape.kinks, *below.ends, 1.0], -1, 1)))
@@ -227,12 +233,11 @@ def _rule(below: Loading) -> tuple[Array, Array]:
 
 def _solved(pressed: Contact, below: Loading) -> tuple[Array, float, float]:
     """The series s (k,) with the stick zone of the half-planes ``below``, and the loads Qf and sf, with their signs."""
-    layer, a, (left, right) = pressed.layer, pressed.a, below.ends
+    layer, a, (e, c) = pressed.layer, pressed.a, _middle(below)
     assert layer
     x, weights = _rule(below)
-    e, c = (left + right) / 2, (right - left) / 2
-    at, inner = a * (e + c * NODES), a * (e + c * POINTS)
-    given = TO_SERIES @ layer.smooth("shear", at, a * x, a * weights * below.traction(x) / below.bound)
+    at, inner, x_rule = (pressed.places(each) for each in (e + c * NODES, e + c * POINTS, x))
+    given = TO_SERIES @ layer.smooth("shear", at, x_rule, a * weights * below.traction(x) / below.bound)
     own = TO_SERIES @ layer.smooth("shear", at, inner, a * c * FORCES).T
     series = np.linalg.solve(np.eye(COUNT) + own[1:], given[1:])
     first = float(given[0] - own[0] @ series)

@@ -113,8 +113,8 @@ class Body(Table, frozen=True, kw_only=True):
         if self.pivot_height is not None and self.support != "pivot":
             given = f"{name}.pivot_height = {self.pivot_height}"
             raise InputError(f"{given}: must be given only with support 'pivot', not {self.support!r}")
-        if self.width == "infinite" and self.support != "roller":
-            raise InputError(f"{name}.width = 'infinite': must be a number, or support = 'roller'")
+        if self.width == "infinite" and (self.support != "roller" or self.kind == "pad"):
+            raise InputError(f"{name}.width = 'infinite': must be a number, or kind = 'block' and support = 'roller'")
         tables = {name: (None if self.width == "infinite" else self.width, self.height)}
         if self.holder:
             tables[f"{name}.holder"] = (self.holder.width, self.holder.height)
