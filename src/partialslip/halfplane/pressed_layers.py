@@ -19,7 +19,7 @@ import numpy as np
 
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.halfplane.layer import Layer
-from partialslip.halfplane.shape import Shape, rule_over
+from partialslip.halfplane.shape import Conditions, Shape, rule_over
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 
@@ -57,7 +57,7 @@ class OnLayers(Shape):
     :mod:`partialslip.halfplane.shape`."""
 
     def __init__(self, below: Shape, share: float, series: Array) -> None:
-        self._below, self._share, self._series = below, share, trimmed(series)
+        self._below, self._share, self._rest = below, share, _Series(series)
         self.kinks, self.even = below.kinks, below.even
 
     @property
@@ -69,14 +69,31 @@ class OnLayers(Shape):
         return self._below.convex
 
     def pressure(self, x: Array) -> Array:
-        return self._share * self._below.pressure(x) + _ROUND.pressure(x) * second_kind(self._series, x)
+        return self._share * self._below.pressure(x) + self._rest.pressure(x)
+
+    def difference(self, t: Array, x: Array) -> Array:
+        return self._share * self._below.difference(t, x) + self._rest.difference(t, x)
+
+    def conditions(self, edge: Array, c: Array, s: Array) -> Conditions:
+        """Linear in the pressure: of half-planes as they are known best, and of a series without kinks."""
+        both = self._below.conditions(edge, c, s), self._rest.conditions(edge, c, s)
+        return Conditions(*(self._share * below + rest for below, rest in zip(*both, strict=True)))
+
+
+class _Series(Shape):
+    """Pressure by a ``series`` of sqrt(1 - x^2) U_j(x)."""
+
+    def __init__(self, series: Array) -> None:
+        self._series = trimmed(series)
+
+    def pressure(self, x: Array) -> Array:
+        return _ROUND.pressure(x) * second_kind(self._series, x)
 
     def difference(self, t: Array, x: Array) -> Array:
         step = t - x
         at_t, at_x = second_kind(self._series, t), second_kind(self._series, x)
         smooth = (at_t - at_x) / np.where(step == 0, np.inf, step)
-        own = _ROUND.difference(t, x) * at_t + _ROUND.pressure(x) * smooth
-        return self._share * self._below.difference(t, x) + own
+        return _ROUND.difference(t, x) * at_t + _ROUND.pressure(x) * smooth
 
 
 _ROUND = HertzShape()
