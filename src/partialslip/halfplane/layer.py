@@ -56,6 +56,7 @@ class Layer:
 
     @property
     def height(self) -> float:
+        """Height of a layer, m."""
         return self.strips.height
 
     def waves(self, x: Array) -> Complex:
