@@ -57,6 +57,8 @@ NAMES = {  # short titles of the problems, as rows have at most 120 characters
     "PS-25": "dissimilar, pressed",
     "PS-26": "meshes do not match",
     "PS-27": "slip reversal",
+    "PS-28": "strips, shear",
+    "PS-29": "strips, large tension",
 }
 COLUMNS = 4  # codes of partialslip side by side
 EQUAL = (  # ours, size of its elements in a, and codes that have elements of this size and order along the contact

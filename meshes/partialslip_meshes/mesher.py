@@ -17,6 +17,9 @@ from typing import Any
 # fixed: right-angled triangles, paired; a final refinement removes the triangles without a partner
 _ALL_QUADS = {"Algorithm": 8, "RecombineAll": 1, "RecombinationAlgorithm": 3}
 
+# limit: half-width of a block, in its height, from which quadrilaterals have at most half its height: gmsh refuses
+# sides that are one element long
+_SLENDER = 4.0
 # cost: of an element: to which the number of elements up to a point of a line is integrated. By default gmsh integrates
 # to 1e-9, which takes three quarters of the time of a mesh that is graded; with 1e-6 sizes are off by 5e-5 (measured)
 _COUNTED = 1e-6
@@ -127,6 +130,8 @@ def mesh(gmsh: ModuleType, corners: int, smooth: float, options: Mapping[str, fl
         gmsh.option.setNumber("General.Terminal", 0)
         lines = _outline(gmsh, **outline)
         kind = _ALL_QUADS if corners == 4 else {}
+        if kind and outline["width"] > _SLENDER * outline["height"]:
+            kind = kind | {"MeshSizeMax": outline["height"] / 2}
         usual = {"SmoothRatio": smooth, "LcIntegrationPrecision": _COUNTED}
         for option, value in {**usual, **kind, **(options or {})}.items():
             gmsh.option.setNumber(f"Mesh.{option}", value)

@@ -12,7 +12,7 @@ from partialslip_meshes import read
 PROBLEMS = read_problems()
 
 
-@pytest.fixture(scope="module", params=["PS-02", "PS-23", "PS-24"])
+@pytest.fixture(scope="module", params=["PS-02", "PS-23", "PS-24", "PS-28"])
 def written(request, tmp_path_factory):
     """Problem, and the folder of its files."""
     problem, folder = PROBLEMS[request.param], tmp_path_factory.mktemp(request.param)

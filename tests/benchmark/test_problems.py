@@ -120,3 +120,14 @@ def test_the_largest_stress_under_a_cylinder_is_known():
     f, p0 = problem.scene.friction.f, problem.targets["p_max"].value
     sheared = problem.scene.load.Q[1] / (f * problem.scene.P)
     assert problem.targets["sigma_xx"].value == pytest.approx(2 * f * p0 * np.sqrt(sheared), rel=1e-12)
+
+
+def test_a_statement_says_what_the_width_of_strips_does():
+    """m of infinitely long strips is 1.4e-4 a larger in PS-29, and a the same."""
+    problem = PROBLEMS["PS-29"]
+    widths = {f"bodies.{name}.width": "infinite" for name in ("upper", "lower")}
+    found = run(problem.scene.replace(widths), "exact")["exact"]
+    a, m = (problem.targets[key] for key in "am")
+    assert found.a == pytest.approx(a.value, rel=1e-12)
+    assert (found.m - m.value) / m.scale == pytest.approx(1.4e-4, rel=0.05)
+    assert "1.4e-4 a" in problem.why

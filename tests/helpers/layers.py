@@ -87,7 +87,7 @@ def sheared(a, phi, f, Q, sigma, h, large=0, begin=None):
         x, at = e + c * OUTER, e + c * INNER
         F, Fx = bound(t) * sign(t), bound(x) * sign(x)
         step = np.subtract.outer(x, t)
-        given = ((F - Fx[:, None]) / step + F * smooth("N", h, x, t)) @ dt + Fx * np.log((x + a) / (a - x))
+        given = ((F - Fx[:, None]) / step + F * smooth("N", h, x, t)) @ dt + Fx * np.log(np.abs((x + a) / (a - x)))
         K = c**2 * _SQUARES * (1 / np.subtract.outer(x, at) + smooth("N", h, x, at))
         K = np.hstack([K, np.full((COUNT + 1, 1), np.pi)])
         star = np.linalg.solve(K / np.pi, -sigma / 4 - given / np.pi)

@@ -61,6 +61,7 @@ class Layer:
 
     @property
     def height(self) -> float:
+        """Height of a layer, m."""
         return self.strips.height
 
     def left_out(self, a: float) -> dict[str, float]:

@@ -194,17 +194,21 @@ class Cycle:
                 angles = np.arccos(np.clip(np.unique([low, *inner, high]), -1, 1))[::-1]
                 half = np.diff(angles)[:, None] / 2
                 nodes, weights = np.polynomial.legendre.leggauss(min(count, max(_PIECES * count // len(half), fewest)))
-                angle = (angles[:-1, None] + half * (1 + nodes)).ravel()
+                # slip begins as d^(3/2) at the distance d from a kink or the stick zone: smooth in sqrt(d)
+                turn = np.pi / 2 * (1 + nodes)
+                angle = (angles[:-1, None] + half * (1 - np.cos(turn))).ravel()
                 y = np.cos(angle)
                 amount = np.abs(unit * change.slip(mean.scaled(now.places(y))))
-                total += float((half * weights).ravel() @ (amount * weight(y, np.sin(angle))))
+                along = np.pi / 2 * (half * np.sin(turn) * weights).ravel()
+                total += float(along @ (amount * weight(y, np.sin(angle))))
             return total
 
         last = path.stage(1.0)
         end = last.now
         work = slipped(last, lambda y, sine: end.a * sine * end.p0 * end.shape.pressure(y))
         shares, weights = np.polynomial.legendre.leggauss(count)
-        for share, weight in zip((1 + shares) / 2, weights / 2, strict=True):
+        roots = (1 + shares) / 2  # slip of a share t of the way, over the contact, begins as t^(5/2)
+        for share, weight in zip(roots**2, roots * weights, strict=True):
             stage = path.stage(float(share))
             uniform, turned = path.pressed(stage.now)
             work -= weight * slipped(stage, lambda y, _, u=uniform, t=turned: u + t * y)  # type: ignore[misc]

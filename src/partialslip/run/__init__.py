@@ -284,8 +284,8 @@ def run(
         scene = plates.told(scene)
     for result in results.values():
         effects.accept(result.regime)
-    # no bars for finite and dissimilar bodies or for a fixed element size: there is no reference; none for effects
-    # forced off: the error measures the effect
+    # no bars for finite bodies but strips, for dissimilar bodies or for a fixed element size: there is no reference;
+    # none for effects forced off: the error measures the effect
     judged = not scene.sized and scene.material.alike and scene.fem.size is None and not effects.missing
     reached = results["fem"].settings.get("accuracy") if allowance and "fem" in results else None
     accuracy = min(float(reached or scene.fem.accuracy), LARGEST)

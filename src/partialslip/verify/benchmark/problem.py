@@ -16,7 +16,7 @@ from partialslip.tools.errors import InputError
 
 _PACKAGE = "partialslip.verify.benchmark"
 _TARGETS = "targets.json"
-EDITION = "1.0"
+EDITION = "1.1"
 SETTINGS = ("fem", "effects")  # tables of a scene that are settings of partialslip, no part of a problem
 
 
