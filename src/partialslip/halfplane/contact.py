@@ -105,8 +105,7 @@ def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
     P, M = pressing or (scene.P, scene.M)
     if not scene.strips:
         return rubbing(_normal_contact(scene, Pressing(P, M)), scene)
-    kappa = scene.material.bodies[0].kappa
-    layer = Layer(scene.strips, (3 - kappa) / (1 + kappa))
+    layer = Layer(scene.strips, scene.material.bodies[0].kappa)
     return rubbing(on_layers(layer, scene.material.A, P, partial(_half_planes, scene), scene.profile.even), scene)
 
 

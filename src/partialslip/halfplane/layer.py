@@ -1,10 +1,15 @@
-"""The kernels of a layer on a frictionless plane, in plane strain or plane stress: Fourier integrals, by a fixed rule.
+"""The kernels of a layer on a frictionless plane, or bonded to one, in plane strain or plane stress: Fourier integrals,
+by a fixed rule.
 
 Two equal layers of height h are mirror images of each other: pressure and shear do not act on each other, as in
 half-planes. A traction cos(k x) moves the surface of one layer by F(w)/k, w = k h, times that of a rigid base
 at infinity, with F = M for pressure and N for shear along the traction, and G across it:
 
-    M = (cosh 2w - 1)/(sinh 2w + 2w),   N = (cosh 2w + 1)/(sinh 2w + 2w),   G = 2w/(sinh 2w + 2w).
+    M = (cosh 2w - 1)/(sinh 2w + 2w),   N = (cosh 2w + 1)/(sinh 2w + 2w),   G = 2w/(sinh 2w + 2w),
+
+and of bonded layers, with kappa = 3 - 4 nu in plane strain and D = 2 kappa cosh 2w + 1 + kappa^2 + 4 w^2,
+
+    M = (2 kappa sinh 2w - 4w)/D,   N = (2 kappa sinh 2w + 4w)/D,   G = (kappa^2 - 1 + 4 w^2)/D.
 
 To 1/(x - t) of half-planes the layers add k(x - t) with
 
@@ -16,6 +21,7 @@ which is smooth: it sees a traction q by its transform int q exp(i w x/h) dx alo
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -30,25 +36,49 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)
 _HALF = np.diff(_PANELS)[:, None] / 2
 _W = (np.array(_PANELS[:-1])[:, None] + _HALF * (1 + _NODES)).ravel()
 _DW = (_HALF * _WEIGHTS).ravel()
-_BELOW = np.sinh(2 * _W) + 2 * _W
-_DECAY = np.exp(-2 * _W)
-# F - 1 without cancellation, and G
-_REST = {"normal": (_DECAY - 1 - 2 * _W) / _BELOW, "shear": (_DECAY + 1 - 2 * _W) / _BELOW}
-_ACROSS = 2 * _W / _BELOW
 Along = Literal["normal", "shear"]
-_DECAY_ALONG = 2.1061  # fixed: sinh 2w + 2w has the root 1.1254 + 2.1061i: balanced states decay as exp(-2.1061 x/h)
-# accuracy: what the sides of strips send back, in (a/h)(1 + a/h) exp(-2.1061 W/h): 1.7 to 3 times what fem
+# accuracy: what the sides of strips send back, in (a/h)(1 + a/h) exp(-decay W/h): 1.7 to 3 times what fem
 # finds at widths of 3 and 4 heights, where it shows
 _SENT_BACK = {"a": 8.0, "m": 16.0, "n": 16.0, "p": 16.0, "q": 30.0}
 
 
 @dataclass(frozen=True)
 class Layer:
-    """What two equal ``strips`` add to two half-planes; ``widening`` is nu/(1 - nu) in plane strain and nu in plane
-    stress."""
+    """What two equal ``strips`` of Kolosov's constant ``kappa`` add to two half-planes."""
 
     strips: Strips
-    widening: float = 0.0
+    kappa: float
+
+    @cached_property
+    def _rest(self) -> dict[Along, Array]:
+        """M - 1 and N - 1, without cancellation."""
+        decay, parts = np.exp(-2 * _W), 4 * _W
+        if self.strips.bonded:
+            same = -2 * self.kappa * decay - 1 - self.kappa**2 - 4 * _W**2
+            return {"normal": (same - parts) / self._below, "shear": (same + parts) / self._below}
+        return {"normal": (decay - 1 - 2 * _W) / self._below, "shear": (decay + 1 - 2 * _W) / self._below}
+
+    @cached_property
+    def _across(self) -> Array:
+        """G."""
+        return (self.kappa**2 - 1 + 4 * _W**2 if self.strips.bonded else 2 * _W) / self._below
+
+    @cached_property
+    def _below(self) -> Array:
+        if self.strips.bonded:
+            return 2 * self.kappa * np.cosh(2 * _W) + 1 + self.kappa**2 + 4 * _W**2
+        return np.sinh(2 * _W) + 2 * _W
+
+    @cached_property
+    def _decay(self) -> float:
+        """Balanced states decay along the strips as exp(-x/h) to this power: by the least imaginary part of the roots
+        of sinh 2w + 2w, or of D, which lies on the imaginary axis."""
+        if not self.strips.bonded:
+            return 2.1061
+        from scipy.optimize import brentq  # takes long to import
+
+        kappa = self.kappa
+        return float(brentq(lambda v: 2 * kappa * math.cos(2 * v) + 1 + kappa**2 - 4 * v**2, 0.5, 1.5))
 
     @property
     def drags(self) -> bool:
@@ -69,7 +99,7 @@ class Layer:
         is known (:meth:`smooth`), as of :attr:`partialslip.Result.estimate`; none if the strips are infinite."""
         if not math.isfinite(self.strips.width):
             return {}
-        part = a / self.height * (1 + a / self.height) * math.exp(-_DECAY_ALONG * self.strips.width / self.height)
+        part = a / self.height * (1 + a / self.height) * math.exp(-self._decay * self.strips.width / self.height)
         return {key: factor * part for key, factor in _SENT_BACK.items()}
 
     def waves(self, x: Array) -> Complex:
@@ -88,7 +118,7 @@ class Layer:
         t: a uniform strain for each of them, here q t/(4 h W).
         """
         transforms = self.transforms(t, forces)
-        factors = _DW * _REST[along] / (np.pi * self.height)
+        factors = _DW * self._rest[along] / (np.pi * self.height)
         result = ((transforms.conj() * factors) @ self.waves(x).T).imag
         if along == "shear":
             result = result + (forces @ t)[..., None] * self._share
@@ -96,7 +126,7 @@ class Layer:
 
     def stretch(self, x: Array, t: Array, forces: Array) -> Array:
         """An integral of :meth:`smooth` along shear at ``x`` (k,), m, N/m."""
-        factors = _DW * _REST["shear"] / (np.pi * _W)
+        factors = _DW * self._rest["shear"] / (np.pi * _W)
         result = -(self.transforms(t, forces).conj() * factors @ self.waves(x).T).real
         return np.asarray(result + float(forces @ t) * self._share * x)
 
@@ -106,7 +136,7 @@ class Layer:
         middle, half = (places[1:] + places[:-1]) / 2, np.diff(places) / 2
         # -1/pi times the integral of k, whose waves have means over cells of their own
         means = self.waves(middle) * np.sinc(half[:, None] / (np.pi * self.height) * _W)
-        factors = _DW * _REST["shear"] / (np.pi * _W)
+        factors = _DW * self._rest["shear"] / (np.pi * _W)
         result = ((means * factors) @ means.conj().T).real - factors.sum()
         result -= self._share * np.outer(middle, middle)
         return np.asarray(result)
@@ -124,7 +154,7 @@ class Layer:
         at, slope = self._potential(z, acting.transform, along)
         mirrored, _ = self._potential(z.conj(), acting.transform, along)
         held = np.where(side > 0, *self.strips.held)
-        uniform = -self.widening * acting.force if along == "normal" else acting.moment / self.height
+        uniform = -(3 - self.kappa) / (1 + self.kappa) * acting.force if along == "normal" else acting.moment / self.height
         across = side if along == "shear" else 1.0
         found = below_surface(at + uniform * held, mirrored + uniform * held, slope, z) * np.stack(
             [side**2, side**2, side]
@@ -136,7 +166,7 @@ class Layer:
         moves by u and v more than a half-plane, continued to complex z
         (:func:`partialslip.result.below.below_surface`).
         """
-        own, other = _REST[along], _ACROSS
+        own, other = self._rest[along], self._across
         if along == "normal":
             cosine, sine = (
                 other * transform.real - 1j * own * transform.imag,

@@ -11,7 +11,7 @@ from partialslip.tools.errors import InputError
 
 # limit: width of strips, in heights, from which their sides hardly count: the slowest of the states that decay along a
 # strip does so as exp(-2.1 x/h), and comes back from either side
-_LONG = 6.0
+_LONG = {"roller": 6.0, "clamped": 20.0}
 _SLENDEREST = 1e-4  # limit: smallest ratio of height to width, or of width to height
 
 
@@ -113,8 +113,9 @@ class Body(Table, frozen=True, kw_only=True):
         if self.pivot_height is not None and self.support != "pivot":
             given = f"{name}.pivot_height = {self.pivot_height}"
             raise InputError(f"{given}: must be given only with support 'pivot', not {self.support!r}")
-        if self.width == "infinite" and (self.support != "roller" or self.kind == "pad"):
-            raise InputError(f"{name}.width = 'infinite': must be a number, or kind = 'block' and support = 'roller'")
+        if self.width == "infinite" and (self.support not in _LONG or self.kind == "pad"):
+            either = "support = 'roller' or 'clamped'"
+            raise InputError(f"{name}.width = 'infinite': must be a number, or kind = 'block' and {either}")
         tables = {name: (None if self.width == "infinite" else self.width, self.height)}
         if self.holder:
             tables[f"{name}.holder"] = (self.holder.width, self.holder.height)
@@ -125,7 +126,7 @@ class Body(Table, frozen=True, kw_only=True):
 
 
 class Strips(NamedTuple):
-    """Two equal long blocks on rollers: their ``height``, m; ``held``, 1/width of the lower and the upper block, 1/m,
+    """Two equal long blocks, on rollers or ``bonded`` to clamped backs: their ``height``, m; ``held``, 1/width of the lower and the upper block, 1/m,
     or zero if not both sides are held along x; and the tension of the lower block, Pa per N/m of Q, that its grips make
     of Q because they do not carry half of it each (``skew``). ``width`` is that of the shorter block, m.
     """
@@ -134,6 +135,7 @@ class Strips(NamedTuple):
     width: float
     held: tuple[float, float]
     skew: float
+    bonded: bool
 
 
 class Bodies(Table, frozen=True, kw_only=True):
@@ -189,18 +191,20 @@ class Bodies(Table, frozen=True, kw_only=True):
 
     @property
     def strips(self) -> Strips | None:
-        """The bodies, if they are two equal long blocks on rollers; None otherwise."""
+        """The bodies, if they are two equal long blocks, both on rollers or both clamped; None otherwise."""
         upper, lower = self.upper, self.lower
         if not (upper and lower and upper.height == lower.height and upper.height):
             return None
-        if any(body.kind != "block" or body.holder or body.support != "roller" for body in (upper, lower)):
+        if any(body.kind != "block" or body.holder or body.support != upper.support for body in (upper, lower)):
             return None
         width = min(upper.span, lower.span)
-        if not width >= _LONG * upper.height:
+        if upper.support not in _LONG or not width >= _LONG[upper.support] * upper.height:
             return None
+        if upper.support == "clamped":
+            return Strips(upper.height, width, (0.0, 0.0), 0.0, bonded=True)
         loose = lower.pulled and not lower.gripped
         held = 0.0 if loose else 1 / lower.span, 1 / upper.span
-        return Strips(upper.height, width, held, (lower.right_share - 0.5) / upper.height if loose else 0.0)
+        return Strips(upper.height, width, held, (lower.right_share - 0.5) / upper.height if loose else 0.0, bonded=False)
 
     @property
     def pad(self) -> str | None:
