@@ -6,7 +6,7 @@ import numpy as np
 
 from partialslip.report.tolerance import draw_tornado, drawn_quantities
 from partialslip.run.tolerance import COVERAGE, Propagation
-from partialslip.study.tolerance.propagate import Solved
+from partialslip.study.tolerance.propagation import Solved
 from partialslip.tools.output.files import csv_text
 from partialslip.tools.output.svg import svg
 

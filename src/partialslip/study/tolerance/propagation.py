@@ -102,10 +102,10 @@ def slide_margin(scene: Scene) -> float:
 
 
 def _margin(scene: Scene, result: Result) -> dict[str, float]:
-    """dsigma of the transition over that of the ``scene``, less 1: zero where the tension is neither small nor large,
+    """1 less dsigma of the ``scene`` over that of the transition: zero where the tension is neither small nor large,
     and an end of the stick zone is at the contact edge."""
     limit, own = result.limits.get("dsigma_transition"), abs(scene.load.dsigma)
-    return {_TENSION: limit / own - 1} if limit and own else {}
+    return {_TENSION: 1 - own / limit} if limit and own else {}
 
 
 def _found(result: Result, method: str) -> dict[str, tuple[float, float]]:
@@ -173,7 +173,8 @@ def propagate(scene: Scene, tell: Progress = lambda _: None, *, drawn: bool = Fa
     count = 0
     if misfit > _MISFIT or drawn or len({*known.regimes}) > 1 or known.refused:
         if known.method == "exact":
-            count = _FEW_DRAWS if may_turn_round(scene) else _DRAWS * (_DRAWN if drawn else 1)
+            turns = any(may_turn_round(moved(scene, own, t)) for t in known.t)
+            count = _FEW_DRAWS if turns else _DRAWS * (_DRAWN if drawn else 1)
             known.add(draws(own, count))
         corners = len(known.t) - count
         unseen = np.r_[fitted:corners, corners : len(known.t) : _CHECKED]
@@ -293,13 +294,13 @@ def _probabilities(known: Solved, over: Mapping[str, Array], count: int) -> dict
     """Probability of each regime: by the margins of sliding and of the transition from small to large tension; of other
     regimes the share of the solved draws, or of all solved scenes without draws."""
     slides: Mask = over[_SLIDES] <= 0
-    first, seen = known.regimes[0], {*known.regimes} - {"sliding"}
+    seen = {*known.regimes} - {"sliding"}
     if _TENSION in over and seen <= {"small tension", "large tension"}:
         small: Mask = over[_TENSION] > 0
         chances = {"small tension": (small & ~slides).mean(), "large tension": (~small & ~slides).mean()}
     else:
         drawn = [each.regime for each in known.results[-count:] if each and each.regime != "sliding"]
-        counted = Counter[str](drawn or [first])
+        counted = Counter(drawn or known.regimes[:1])
         chances = {key: (1 - slides.mean()) * number / counted.total() for key, number in counted.items()}
     chances["sliding"] = slides.mean()
     return {key: float(chance) for key, chance in chances.items() if chance > 0}
