@@ -73,7 +73,7 @@ def scenes():
         "near sliding": (8, lambda: (Qf := numbers.uniform(0.9, 0.98), numbers.uniform(0, 1.0) * (1 - Qf))),
         "large tension": (6, lambda: (Qf := numbers.uniform(0.1, 0.35), Qf * numbers.uniform(7, 10))),
         "transition": (2, lambda: (Qf := numbers.uniform(0.2, 0.5), 4 * Qf * numbers.uniform(0.97, 1.03))),
-        "reversal": (2, lambda: (Qf := numbers.uniform(0.5, 0.8), 4 * Qf * numbers.uniform(0.8, 0.9))),
+        "reversal": (2, lambda: (Qf := numbers.uniform(0.5, 0.8), 4 * Qf * numbers.uniform(1.1, 1.3))),
     }
     for group, (count, make) in groups.items():
         for _ in range(count):

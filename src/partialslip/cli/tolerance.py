@@ -38,16 +38,16 @@ def _tolerance(options: argparse.Namespace) -> int:
     from partialslip.report import tolerance as shown
     from partialslip.report.page import Section
     from partialslip.study.tolerance import propagate
-    from partialslip.study.tolerance.figure import CAPTION, tolerance_csv, tolerance_svg
-    from partialslip.tools.output.files import json_text, write_texts
+    from partialslip.study.tolerance.figure import CAPTION, draws_csv, tolerance_csv, tolerance_svg
+    from partialslip.tools.output.files import write_texts
 
     def find(folder: Path) -> Findings:
         with working(name) as tell, naming(options.scene):
             found, known = propagate(scene, tell, drawn=True)
             figure = tolerance_svg(found, known)
             texts = {
-                "tolerance.json": json_text(found),
-                "draws.csv": tolerance_csv(found, known),
+                "tolerance.csv": tolerance_csv(found, scene.units),
+                "draws.csv": draws_csv(found, known),
                 "tolerance.svg": figure,
             }
             files = write_texts(folder, texts)

@@ -45,18 +45,16 @@ def tolerance_rows(found: Propagation, units: Units) -> list[tuple[str, ...]]:
 
 def _row(key: str, found: Interval, units: Units) -> tuple[str, ...]:
     exponent, unit = (0, "a") if key in ("m", "n") else _unit(found, units)
-    value, low, high = (
-        math.nan if each is None else each / 10.0**exponent for each in (found.value, found.low, found.high)
-    )
-    error = None if found.error is None else found.error / 10.0**exponent
+    size = 10.0**exponent
+    value, least, error = found.value / size, _ROUNDING * abs(found.value) / size, (found.error or 0.0) / size
+    off = "no estimate" if found.error is None else "rounding" if error <= least else f"{error:.1e}"
+    low, high = (value if each is None else each / size for each in (found.low, found.high))
     wide = max(abs(high - value), abs(value - low))
-    least = _ROUNDING * abs(value)
-    digits = _decimals(max(wide, error or 0.0, least))
-    off = "no estimate" if error is None else "rounding" if error <= least else f"{error:.1e}"
-    interval = (
-        "not known" if math.isnan(wide) else "as value" if wide <= least else f"{low:.{digits}f} to {high:.{digits}f}"
-    )
-    return _NAMES.get(key, key), unit, f"{value:.{digits}f}", interval, off, shares_text(found.shares)
+    known = found.low is not None and wide > least
+    digits = _decimals(max(wide, error, least))
+    shown = [f"{each:.{digits}f}" if max(wide, error) > least else f"{each:.7g}" for each in (value, low, high)]
+    interval = f"{shown[1]} to {shown[2]}" if known else "as value" if found.low is not None else "not known"
+    return _NAMES.get(key, key), unit, shown[0], interval, off, shares_text(found.shares) if known else ""
 
 
 def _unit(found: Interval, units: Units) -> tuple[int, str]:

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -220,7 +220,7 @@ def _input(key: str, width: Any, value: Any, units: Units) -> Input:
     return Input(key, value, given * (REACH if normal else 1.0), normal, f"{text} (std)" if normal else text)
 
 
-def moved(scene: "Scene", changed: Sequence[Input], deviations: Sequence[float]) -> "Scene":
+def moved(scene: "Scene", changed: Sequence[Input], deviations: Iterable[float]) -> "Scene":
     """Return ``scene`` with each of the inputs ``changed`` at its deviation, in reaches, and without tolerances.
 
     Raises

@@ -1,4 +1,4 @@
-"""Figure and table of a study of tolerances."""
+"""Figure and tables of a study of tolerances."""
 
 from typing import TYPE_CHECKING
 
@@ -6,6 +6,8 @@ import numpy as np
 
 from partialslip.report.tolerance import draw_tornado, drawn_quantities
 from partialslip.run.tolerance import COVERAGE, Propagation
+from partialslip.scene.dimensions import dimension
+from partialslip.scene.units import Units
 from partialslip.study.tolerance.propagation import Solved
 from partialslip.tools.output.files import csv_text
 from partialslip.tools.output.svg import svg
@@ -76,12 +78,33 @@ def _draw_tractions(axes: "Axes", found: Propagation, known: Solved) -> None:
     axes.set_title(known.scene.name, loc="left", fontsize=10)
 
 
-def tolerance_csv(found: Propagation, known: Solved) -> str:
-    """Return the solved scenes as CSV, one row each, in SI units, m and n in a: inputs (of a list the largest size),
-    regime, and quantities; empty cells where there is no value."""
-    keys = [*found.quantities]
+def tolerance_csv(found: Propagation, units: Units) -> str:
+    """Return the intervals as CSV, one row a quantity, in ``units``, m and n in a; empty cells where a number is not
+    known."""
+    rows = [
+        [
+            key,
+            "a" if key in ("m", "n") else units.label(each.of),
+            *("" if number is None else units.from_si(number, each.of) for number in (each.value, each.low, each.high)),
+            "" if each.error is None else units.from_si(each.error, each.of),
+            *(each.shares[name] for name in found.inputs),
+        ]
+        for key, each in found.quantities.items()
+    ]
+    head = ("quantity", "unit", "value", "low", "high", "numerical error", *(f"share of {key}" for key in found.inputs))
+    return csv_text(head, rows)
+
+
+def draws_csv(found: Propagation, known: Solved) -> str:
+    """Return the solved scenes as CSV, one row each, in the scene's units: inputs (of a list the largest size), regime,
+    and quantities, m and n in a; empty cells where there is no value."""
+    units, of = known.scene.units, {key: each.of for key, each in found.quantities.items()}
     rows = []
     for t, values, result in zip(known.t, known.values, known.results, strict=True):
-        numbers = [each.number(float(at)) for each, at in zip(known.inputs, t, strict=True)]
-        rows.append([*numbers, result.regime if result else "not solved", *(values.get(key, "") for key in keys)])
-    return csv_text([*found.inputs, "regime", *keys], rows)
+        numbers = [
+            units.from_si(each.number(float(at)), dimension(each.key)) for each, at in zip(known.inputs, t, strict=True)
+        ]
+        cells = [units.from_si(values[key], of[key]) if key in values else "" for key in of]
+        rows.append([*numbers, result.regime if result else "not solved", *cells])
+    inputs = [units.heading(key, dimension(key)) for key in found.inputs]
+    return csv_text([*inputs, "regime", *(units.heading(key, each) for key, each in of.items())], rows)

@@ -13,7 +13,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+from msgspec.structs import replace
 
+from partialslip.halfplane import contact
 from partialslip.result import Result
 from partialslip.result.peak import peak_error, pressure_peaks
 from partialslip.result.record import number
@@ -33,10 +35,12 @@ from partialslip.tools.errors import InputError
 _DRAWS, _FEW_DRAWS = 48, 16  # cost: solved draws of exact: without and with slip that may reverse, which takes seconds
 _CHECKED = 4  # cost: one draw of so many, and the corners, check the surface through the others
 _DRAWN = 4  # display: times as many where draws are shown
+_ACCURACY = 1e-3  # cost: of march, as fem.accuracy: below what any tolerance changes
 _CORNERS = 8  # cost: solved corners of the range
 _EVALUATED = 16384  # accuracy: draws of the surfaces; quantiles change by 0.1 % of the interval with twice as many
 _MISFIT = 0.03  # accuracy: of differences at a corner, in the width of the interval, below which nothing is drawn
 _SEARCHED = 3.0  # display: in reaches, how far from the given value a change of regime is sought
+_ROUNDING = 1e-9  # limit: of p0: less is no tension
 _SLIDES, _TENSION = "margin of sliding", "margin of the transition"
 _SQUARE, _CENTRE = "c^2", "centre"
 _KINDS: Mapping[str, Dimension] = {
@@ -73,7 +77,8 @@ class Solved:
             except InputError as error:
                 if not len(self.t):
                     raise
-                self.refused[str(error)] += 1
+                if values[_SLIDES] > 0:
+                    self.refused[str(error)] += 1
             self.t.append(point)
             self.values.append(values)
             self.results.append(result)
@@ -96,8 +101,12 @@ class Solved:
 
 
 def slide_margin(scene: Scene) -> float:
-    """1 - \\|Q\\|/(f P), the least at a load point: zero where the contact begins to slide."""
-    f, pairs = scene.friction.f, zip(scene.load.points, scene.pressing, strict=True)
+    """1 - \\|Q\\|/(f P), the least at a load point: zero where the contact begins to slide; f is the mean over the
+    pressure."""
+    if scene.free:
+        return 1.0
+    f = contact(scene).f if scene.friction.varies else scene.friction.f
+    pairs = zip(scene.load.points, scene.pressing, strict=True)
     return min(1 - abs(Q) / (f * P) if f else -1.0 for (Q, _), (P, _) in pairs)
 
 
@@ -115,7 +124,7 @@ def _found(result: Result, method: str) -> dict[str, tuple[float, float]]:
     if result.m is not None and result.n is not None and result.steady:
         found |= {"m": (result.m / result.a, off["m"]), "n": (result.n / result.a, off["n"])}
     found["p_max"] = max(pressure_peaks(result, error_of(result, "p", method)))
-    if result.surface:
+    if result.surface and result.surface.largest[1] > _ROUNDING * result.p0:
         error = peak_error(result)
         found["sigma_xx"] = result.surface.largest[1], math.nan if error is None else error
     if result.slip:
@@ -139,7 +148,8 @@ def method_of(scene: Scene) -> str:
 
 
 def with_tolerance(outcome: Run, tell: Progress = lambda _: None) -> Run:
-    """Return ``outcome`` with what the tolerances of its scene allow; as it is if the scene has none."""
+    """Return ``outcome`` with what the tolerances of its scene allow; as it is if the scene has none. ``tell`` and errors
+    as for :func:`propagate`."""
     if outcome.scene.tolerance is None:
         return outcome
     return dataclasses.replace(outcome, tolerance=propagate(outcome.scene, tell)[0])
@@ -164,14 +174,17 @@ def propagate(scene: Scene, tell: Progress = lambda _: None, *, drawn: bool = Fa
     own = inputs(scene, scene.units)
     if not own:
         raise InputError('tolerance: missing: must name inputs, such as [tolerance] friction.f = "5 %"')
-    known = Solved(scene, own, method_of(scene), tell)
+    method = method_of(scene)
+    if method != "exact":
+        scene = replace(scene, fem=replace(scene.fem, accuracy=max(scene.fem.accuracy, _ACCURACY)))
+    known = Solved(scene, own, method, tell)
     known.add(star(len(own)), criteria=scene.fatigue != Fatigue())
     fitted, evaluated = len(known.t), draws(own, _EVALUATED)
     model = _Model(known, quadratic)
     known.add(_corners(known))
     misfit = model.misfit(known, np.arange(fitted, len(known.t)), evaluated)
     count = 0
-    if misfit > _MISFIT or drawn or len({*known.regimes}) > 1 or known.refused:
+    if misfit > _MISFIT or drawn or len({*known.regimes}) > 1 or known.refused or known.column(_SLIDES).min() <= 0:
         if known.method == "exact":
             turns = any(may_turn_round(moved(scene, own, t)) for t in known.t)
             count = _FEW_DRAWS if turns else _DRAWS * (_DRAWN if drawn else 1)
