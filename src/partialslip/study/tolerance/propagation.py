@@ -148,8 +148,10 @@ def method_of(scene: Scene) -> str:
 
 
 def with_tolerance(outcome: Run, tell: Progress = lambda _: None) -> Run:
-    """Return ``outcome`` with what the tolerances of its scene allow; as it is if the scene has none. ``tell`` and errors
-    as for :func:`propagate`."""
+    """Return ``outcome`` with what the tolerances of its scene allow; as it is if the scene has none.
+
+    ``tell`` and errors are as for :func:`propagate`.
+    """
     if outcome.scene.tolerance is None:
         return outcome
     return dataclasses.replace(outcome, tolerance=propagate(outcome.scene, tell)[0])
