@@ -28,7 +28,7 @@ def test_run_prints_a_second_table_and_records_it(here, capsys):
     assert main(["run", NAME, "--with", "exact", *FEW]) == 0
     printed = capsys.readouterr().out
     assert printed.index("p_max") < printed.index("within friction.f 1 %, load.P 500 N/m (std): by exact, differences")
-    assert re.search("95% interval +numerical error +from", printed)
+    assert re.search("95% interval +num. error +from", printed)
     assert "regime: small tension throughout" in printed
     (folder,) = here.glob("results/*")
     data = json.loads((folder / "results.json").read_text())

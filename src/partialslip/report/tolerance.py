@@ -1,9 +1,10 @@
 """What the tolerances of a scene allow, as texts and table cells: values, intervals and shares of the inputs.
 
-The numerical error has a column of its own. Digits follow the larger of both.
+The numerical error has a column of its own; digits follow the larger of both.
 """
 
 import math
+from collections import Counter
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -18,8 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-HEADINGS = ("quantity", "unit", "value", f"{COVERAGE:.0%} interval", "numerical error", "from")
-_NAMES = {"dissipated": "dissipated in a cycle", "sigma_xx": "largest sigma_xx"}
+HEADINGS = ("quantity", "unit", "value", f"{COVERAGE:.0%} interval", "num. error", "from")
 _LEAST = 0.01  # display: smaller shares are left out
 _ROUNDING = 1e-9  # display: of the value: smaller intervals and errors are none
 _LENGTH = (-3, "mm")
@@ -54,7 +54,7 @@ def _row(key: str, found: Interval, units: Units) -> tuple[str, ...]:
     digits = _decimals(max(wide, error, least))
     shown = [f"{each:.{digits}f}" if max(wide, error) > least else f"{each:.7g}" for each in (value, low, high)]
     interval = f"{shown[1]} to {shown[2]}" if known else "as value" if found.low is not None else "not known"
-    return _NAMES.get(key, key), unit, shown[0], interval, off, shares_text(found.shares) if known else ""
+    return key, unit, shown[0], interval, off, shares_text(found.shares) if known else ""
 
 
 def _unit(found: Interval, units: Units) -> tuple[int, str]:
@@ -69,8 +69,10 @@ def _decimals(width: float) -> int:
 
 
 def shares_text(shares: Mapping[str, float]) -> str:
-    """Return shares of inputs as text, and what the inputs do together."""
-    known = {key: share for key, share in shares.items() if share >= _LEAST}
+    """Return shares of inputs, by the last part of their keys where this is enough, and of what inputs do together."""
+    short = Counter(key.rpartition(".")[2] for key in shares)
+    names = {key: last if short[last := key.rpartition(".")[2]] == 1 else key for key in shares}
+    known = {names[key]: share for key, share in shares.items() if share >= _LEAST}
     if known and (rest := 1 - sum(shares.values())) >= _LEAST:
         known["together"] = rest
     return ", ".join(f"{key} {share:.0%}" for key, share in known.items())
@@ -81,7 +83,7 @@ def tolerance_lines(found: Propagation, units: Units) -> list[str]:
     chances = [f"{regime} {_percent(chance)}" for regime, chance in found.regimes.items()]
     lines = [f"regime: {', '.join(chances) if len(chances) > 1 else f'{next(iter(found.regimes))} throughout'}"]
     if "sliding" in found.regimes and "m" in found.quantities:
-        lines[0] += "; m and n are of the cases that do not slide"
+        lines[0] += "; all but a and pressures are of cases that do not slide"
     for change in found.changes:
         value = units.labelled(change.value, dimension(change.key), 4).strip()
         off = "" if change.share is None else f" ({change.share:+.2%})"

@@ -27,7 +27,7 @@ from partialslip.scene import Fatigue, Scene
 from partialslip.scene.gradual import may_turn_round
 from partialslip.scene.tolerance import Input, inputs, moved
 from partialslip.scene.units import Dimension
-from partialslip.study.fatigue import hot_spots
+from partialslip.study.fatigue import HotSpot, hot_spots
 from partialslip.study.tolerance.surface import Surface, draws, interpolated, quadratic, shares, star
 from partialslip.tools.arrays import Array, Indices, Mask
 from partialslip.tools.errors import InputError
@@ -43,6 +43,7 @@ _SEARCHED = 3.0  # display: in reaches, how far from the given value a change of
 _ROUNDING = 1e-9  # limit: of p0: less is no tension
 _SLIDES, _TENSION = "margin of sliding", "margin of the transition"
 _SQUARE, _CENTRE = "c^2", "centre"
+_SLIDING = ("a", "p0", "p_max", _SLIDES, _TENSION)  # known of a contact that slides, too
 _KINDS: Mapping[str, Dimension] = {
     "a": "m", "m": "1", "n": "1", "p0": "Pa", "p_max": "Pa", "sigma_xx": "Pa", "dissipated": "J/m",
 }  # fmt: skip
@@ -50,7 +51,8 @@ _KINDS: Mapping[str, Dimension] = {
 
 @dataclass
 class Solved:
-    """Scenes solved around ``scene``: deviations ``t`` (k,) of its ``inputs``, ``values`` by quantity, and results."""
+    """Scenes solved around ``scene``: deviations ``t`` (k,) of its ``inputs``, ``values`` by quantity, and results;
+    ``spots`` are hot spots of the scene as given."""
 
     scene: Scene
     inputs: tuple[Input, ...]
@@ -60,6 +62,7 @@ class Solved:
     values: list[dict[str, float]] = field(default_factory=list)
     results: list[Result | None] = field(default_factory=list)
     refused: Counter[str] = field(default_factory=Counter)
+    spots: Mapping[str, HotSpot] = field(default_factory=dict)
 
     def add(self, points: Array, criteria: bool = False) -> None:
         """Solve the scenes at ``points`` (n, k)."""
@@ -69,11 +72,12 @@ class Solved:
             values = {_SLIDES: slide_margin(scene)}
             try:
                 result = run(scene, self.method, stresses=True)[self.method]
-                values |= {key: value for key, (value, _) in _found(result, self.method).items()} | _margin(
-                    scene, result
-                )
+                values |= {key: value for key, (value, _) in _found(result, self.method).items()}
+                values |= _margin(scene, result)
                 if criteria:
-                    values |= {key: spot.value for key, spot in hot_spots(scene, result).items()}
+                    spots = hot_spots(scene, result)
+                    self.spots = self.spots or spots
+                    values |= {key: spot.value for key, spot in spots.items()}
             except InputError as error:
                 if not len(self.t):
                     raise
@@ -212,13 +216,13 @@ class _Model:
         self._surface = fit(t, np.stack([columns[key] for key in self._keys], axis=1))
 
     def at(self, t: Array) -> dict[str, Array]:
-        """Quantities at deviations ``t`` (n, k); NaN for m and n where the contact slides."""
+        """Quantities at deviations ``t`` (n, k); NaN where the contact slides for those of partial slip."""
         found = dict(zip(self._keys, self._surface(t).T, strict=True))
         if _SQUARE in found:
             c, centre = np.sqrt(np.maximum(found.pop(_SQUARE), 0.0)), found.pop(_CENTRE)
-            slides = found[_SLIDES] <= 0
-            found |= {key: np.where(slides, np.nan, each) for key, each in (("m", c - centre), ("n", c + centre))}
-        return found
+            found |= {"m": c - centre, "n": c + centre}
+        slides = found[_SLIDES] <= 0
+        return {key: each if key in _SLIDING else np.where(slides, np.nan, each) for key, each in found.items()}
 
     def misfit(self, known: Solved, places: Indices, evaluated: Array) -> float:
         """Largest error at the solved points ``places``, in the width of the interval; errors of rounding and of the
@@ -278,15 +282,12 @@ def _intervals(known: Solved, over: Mapping[str, Array], evaluated: Array) -> It
     first, keys = known.results[0], [each.key for each in known.inputs]
     assert first
     found = _found(first, known.method)
-    dimensions: dict[str, Dimension] = dict(_KINDS)
-    if known.scene.fatigue != Fatigue():
-        spots = hot_spots(known.scene, first)
-        dimensions |= {key: spot.of for key, spot in spots.items()}
-        found |= {
-            key: (spot.value, math.nan if spot.error is None else spot.error * spot.value)
-            for key, spot in spots.items()
-            if key not in found
-        }
+    dimensions = {**_KINDS, **{key: spot.of for key, spot in known.spots.items()}}
+    found |= {
+        key: (spot.value, math.nan if spot.error is None else spot.error * spot.value)
+        for key, spot in known.spots.items()
+        if key not in found
+    }
     for key, (value, error) in found.items():
         low, high = _quantiles(over[key])
         parts = dict(zip(keys, shares(evaluated, over[key]).tolist(), strict=True))
