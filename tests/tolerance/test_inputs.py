@@ -65,6 +65,14 @@ def test_a_share_of_zero_and_too_many_inputs():
     assert (e.at(1.0), e.at(-1.0)) == (1e-6, -1e-6)
 
 
+def test_displacements_are_refused():
+    """Each body would have to be solved by elements again."""
+    body = {"width": 2e-3, "height": 2e-3}
+    driven = {"bodies.upper": body, "bodies.lower": body, "load.Q": [0, 0], "load.displacement": [-1e-6, 1e-6]}
+    scene = load_scene(NAME).replace(driven)
+    assert "must be left out with load.displacement" in line_of(scene.replace, {"tolerance.friction.f": "5 %"})
+
+
 def test_a_start_is_refused(refused):
     assert "must be left out with tolerances" in refused(
         "run", NAME, "--tolerance", "friction.f=5%", "--start", "a.npz"

@@ -159,11 +159,7 @@ class Input:
 
     def number(self, deviation: float) -> float:
         """The value at a ``deviation`` as one number; of a list the number of the largest size, without sign."""
-        return (
-            self.size + deviation * self.reach
-            if isinstance(self.value, tuple)
-            else self.value + (deviation * self.reach)
-        )
+        return (self.size if isinstance(self.value, tuple) else self.value) + deviation * self.reach
 
 
 def inputs(scene: "Scene", units: Units = SI) -> tuple[Input, ...]:
@@ -176,6 +172,8 @@ def inputs(scene: "Scene", units: Units = SI) -> tuple[Input, ...]:
     """
     if scene.tolerance is None:
         return ()
+    if scene.load.displacement is not None:
+        raise InputError("tolerance: must be left out with load.displacement, for which only fem finds Q: give load.Q")
     tables = msgspec.to_builtins(scene)
     widths = dict(_leaves(tables["tolerance"]))
     if len(widths) > _MOST:

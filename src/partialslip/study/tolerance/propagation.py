@@ -139,14 +139,7 @@ def _found(result: Result, method: str) -> dict[str, tuple[float, float]]:
 
 def method_of(scene: Scene) -> str:
     """Return the method that solves the draws: the reference of ``scene``, or where that is fem, equivalent half-planes
-    of finite bodies and march of dissimilar materials.
-
-    Raises
-    ------
-    InputError
-        If Q follows from displacements of plates, which fem alone finds.
-    """
-    scene.load.require_forces(scene.units)
+    of finite bodies and march of dissimilar materials."""
     best = reference(scene).method
     return best if best != "fem" else "equivalent" if scene.finite else "march"
 
@@ -175,7 +168,7 @@ def propagate(scene: Scene, tell: Progress = lambda _: None, *, drawn: bool = Fa
     Raises
     ------
     InputError
-        If the scene has no tolerance, or cannot be solved but by fem.
+        If the scene has no tolerance, or cannot be solved.
     """
     own = inputs(scene, scene.units)
     if not own:
