@@ -38,6 +38,7 @@ _DRAWN = 4  # display: times as many where draws are shown
 _ACCURACY = 1e-3  # cost: of march, as fem.accuracy: below what any tolerance changes
 _CORNERS = 8  # cost: solved corners of the range
 _EVALUATED = 16384  # accuracy: draws of the surfaces; quantiles change by 0.1 % of the interval with twice as many
+_ROUGHLY = 1024  # cost: draws of the surfaces that tell the width of an interval, by which a misfit is measured
 _MISFIT = 0.03  # accuracy: of differences at a corner, in the width of the interval, below which nothing is drawn
 _SEARCHED = 3.0  # display: in reaches, how far from the given value a change of regime is sought
 _ROUNDING = 1e-9  # limit: of p0: less is no tension
@@ -220,7 +221,7 @@ class _Model:
     def misfit(self, known: Solved, places: Indices, evaluated: Array) -> float:
         """Largest error at the solved points ``places``, in the width of the interval; errors of rounding and of the
         method do not count."""
-        there, over = self.at(np.array(known.t)[places]), self.at(evaluated)
+        there, over = self.at(np.array(known.t)[places]), self.at(evaluated[:_ROUGHLY])
         first = known.results[0]
         assert first
         found, worst = _found(first, known.method), 0.0
