@@ -17,12 +17,14 @@ from partialslip import scene
 from partialslip.cli import main
 from partialslip.scene import bodies
 from partialslip.scene.measured import ProfileFile
+from partialslip.scene.tolerance import Tolerance
 
 DOCS = Path(__file__).parents[1] / "docs"
 TABLES = {
     "Scene": [scene.Scene], "material": [scene.Material], "profile": [*get_args(scene.Profile), ProfileFile],
     "friction": [scene.Friction], "load": [scene.Load], "bodies": [bodies.Bodies, bodies.Body, bodies.Holder],
     "fem": [scene.Fem], "effects": [scene.Effects], "fatigue": [scene.Fatigue],
+    "tolerance": [Tolerance],
 }  # fmt: skip
 
 

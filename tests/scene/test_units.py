@@ -17,7 +17,7 @@ from partialslip.report import answer, rows
 from partialslip.report.files import surface_csv, tractions_csv
 from partialslip.result.fields import SurfaceStress
 from partialslip.scene import Scene
-from partialslip.scene.dimensions import DIMENSIONS
+from partialslip.scene.dimensions import DIMENSIONS, dimension
 from partialslip.scene.profiles import FlatRounded, Hertz, Tabulated
 from partialslip.scene.reading import load_scene, parse_scene, scene_tables, scene_toml, shipped_scenes
 from partialslip.scene.table import Table
@@ -174,7 +174,11 @@ def types(kind, path=""):
 def test_every_number_of_a_scene_has_a_dimension():
     """And only those: whole numbers are counts."""
     assert {Hertz, FlatRounded, Tabulated} <= set(Scene.__annotations__["profile"].__args__)
-    assert {key for key, kind in types(Scene) if "float" in kind} == set(DIMENSIONS)
+    keys = {key for key, kind in types(Scene) if "float" in kind}
+    widths = {key for key in keys if key.startswith("tolerance.")}
+    assert keys - widths == set(DIMENSIONS)
+    assert {dimension(key) for key in widths} <= {dimension(key) for key in DIMENSIONS}
+    assert {key.removeprefix("tolerance.").removesuffix(".std") for key in widths} < set(DIMENSIONS)
 
 
 def test_the_twins_have_every_key_with_a_dimension():

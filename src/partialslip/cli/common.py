@@ -1,6 +1,7 @@
 """Functions shared by several commands."""
 
 import argparse
+import json
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
@@ -37,6 +38,21 @@ def add_scene(
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
                         help="change a setting of the scene, e.g. load.P=2e5, in the scene's units; may be "
                         "repeated")  # fmt: skip
+
+
+def add_tolerance(parser: argparse.ArgumentParser) -> None:
+    """Add ``--tolerance``, a setting of the scene, to ``parser``."""
+    parser.add_argument("--tolerance", dest="overrides", action="append", type=_tolerance, metavar="KEY=HALF-WIDTH",
+                        help="how far an input may be off: friction.f=5%%, load.P=1e3 in the scene's units, or "
+                        "load.P={std=1e3}; tells what it allows the results; may be repeated")  # fmt: skip
+
+
+def _tolerance(text: str) -> str:
+    """Return the setting of the scene that ``--tolerance`` asks for."""
+    key, equals, width = (part.strip() for part in text.partition("="))
+    if not (key and equals and width):
+        raise argparse.ArgumentTypeError(f"{text!r}: must be KEY=HALF-WIDTH, for example friction.f=5%")
+    return f"tolerance.{key}={json.dumps(width) if width.endswith('%') else width}"
 
 
 def add_out(
@@ -293,6 +309,8 @@ def _content(scene: "Scene | None", constants: bool) -> dict[str, Any]:
     from partialslip.study.batch.ledger import scene_content
 
     more = {"shown_in": scene.shown_in} | ({"fatigue": msgspec.to_builtins(scene.fatigue)} if constants else {})
+    if scene.tolerance:
+        more["tolerance"] = msgspec.to_builtins(scene.tolerance)
     return {key: value for key, value in scene_content(scene).items() if key != "title"} | more
 
 

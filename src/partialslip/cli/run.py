@@ -13,6 +13,7 @@ from partialslip.cli.common import (
     add_out,
     add_pdf,
     add_scene,
+    add_tolerance,
     add_verbose,
     check_output,
     folder_if_wanted,
@@ -52,6 +53,7 @@ def add(commands: Commands) -> None:
         unjudged="headline quantities not judged",
     )
     add_scene(runs)
+    add_tolerance(runs)
     runs.add_argument("--with", dest="methods", metavar="METHODS",
                       help=f"methods of {', '.join(METHODS)}, separated by commas (default: fem and, of one "
                       "material, exact or else march; with bodies.equivalent exact and equivalent)")  # fmt: skip
@@ -80,6 +82,8 @@ def _run(options: argparse.Namespace) -> int:
     if options.save == "":
         raise InputError("--save '': must name a file")
     scene = partialslip.load_scene(options.scene, [*_accuracy(options), *options.overrides])
+    if scene.tolerance and options.start is not None:
+        raise InputError(f"--start {options.start}: must be left out with tolerances, which move the start, too")
     start = partialslip.load_state(options.start) if options.start is not None else None
     budget = _budget(options, scene, methods)
 
@@ -122,6 +126,11 @@ def _run(options: argparse.Namespace) -> int:
             if getattr(scene.profile, "measured", None):
                 tell("noise of the profile")
                 _ = outcome.noise  # while the console shows what the command is doing
+            if scene.tolerance:
+                from partialslip.study.tolerance import with_tolerance
+
+                with naming(options.scene):
+                    outcome = with_tolerance(outcome, tell)
             files = []
             if options.save is not None:
                 save = Path(options.save)

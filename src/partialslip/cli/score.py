@@ -11,6 +11,7 @@ from partialslip.cli.common import (
     add_out,
     add_pdf,
     add_scene,
+    add_tolerance,
     add_verbose,
     check_output,
     columns_of,
@@ -43,6 +44,7 @@ def add(commands: Commands) -> None:
         unjudged="headline quantities not judged, with --bar",
     )
     add_scene(scores)
+    add_tolerance(scores)
     scores.add_argument("files", metavar="FILE", nargs="*", default=[],
                         help="tractions: a table (.csv, .txt, .tsv, .rpt), .frd or .dat, or .vtu, .vtk, .xdmf, .xmf, "
                         ".msh, .med, .e, .exo or .ex2; or one file for each load point")  # fmt: skip
@@ -130,6 +132,10 @@ def _score(options: argparse.Namespace) -> int:
             kind=options.kind,
             progress=tell,
         )
+        if scene.tolerance:
+            from partialslip.study.tolerance import with_tolerance
+
+            outcome = with_tolerance(outcome, tell)
         written = write_run(outcome, folder, origin(options), pdf=options.pdf) if folder else []
     return print_outcome(outcome, options, written, elsewhere=elsewhere)
 

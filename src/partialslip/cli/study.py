@@ -1,6 +1,6 @@
 """partialslip study: solve many cases of a scene and evaluate them together."""
 
-from partialslip.cli import cost, effects, size
+from partialslip.cli import cost, effects, size, tolerance
 from partialslip.cli.common import Commands
 
 
@@ -8,7 +8,7 @@ def add(commands: Commands) -> None:
     """Add the command to the parser of ``commands``."""
     study = commands.add_parser(
         "study",
-        help="studies of a scene: effects, cost of accuracy, sizes of bodies",
+        help="studies of a scene: effects, cost of accuracy, sizes of bodies, tolerances",
         description="Solve many cases of a scene; print tables and write files and figures. A stopped study of cost or "
         "size continues.",
         examples=[
@@ -17,5 +17,5 @@ def add(commands: Commands) -> None:
         ],
     )
     topics = study.add_subparsers(required=True, metavar="TOPIC")
-    for topic in (effects, cost, size):
+    for topic in (effects, cost, size, tolerance):
         topic.add(topics)

@@ -9,6 +9,15 @@ from partialslip.report.figure import error_svg, mesh_svg, profile_svg, traction
 from partialslip.report.levels import levels_svg
 from partialslip.report.loop import loop_remark, loop_rows, loop_svg
 from partialslip.report.sketch import sketch_svg
+from partialslip.report.tolerance import (
+    HEADINGS,
+    TORNADO,
+    allowed_lines,
+    tolerance_heading,
+    tolerance_lines,
+    tolerance_rows,
+    tornado_svg,
+)
 from partialslip.run import Run
 from partialslip.scene import Scene
 from partialslip.tools.origin import Made, origin_lines
@@ -41,6 +50,15 @@ class Section:
     words: Sequence[int] = ()
 
 
+def tolerance_section(run: Run) -> Section:
+    """Return the section on what the tolerances of the scene of ``run`` allow."""
+    found, units = run.tolerance, run.scene.units
+    assert found
+    lines = [f"{line}." for line in (tolerance_heading(found), *tolerance_lines(found, units), *allowed_lines(run))]
+    rows = tolerance_rows(found, units)
+    return Section("Tolerances of the inputs", lines, tornado_svg(found), TORNADO, HEADINGS, rows, (1, 5))
+
+
 def run_page(run: Run, made: Made, sections: Sequence[Section] = ()) -> str:
     """Return the report of ``run``, of the origin ``made``, as HTML; with further ``sections``."""
     return render_page(
@@ -57,7 +75,7 @@ def run_page(run: Run, made: Made, sections: Sequence[Section] = ()) -> str:
         errors=error_svg(run),
         amounts=amounts({rows.whose(run, name): each for name, each in run.results.items()}, run.scene.units),
         levels=levels_svg(run),
-        sections=sections,
+        sections=[*([tolerance_section(run)] if run.tolerance else []), *sections],
         plates={"figure": loop_svg(run), "rows": loop_rows(run), "remark": loop_remark(run)},
         mesh=mesh_svg(run),
         profile=profile_svg(run.scene),

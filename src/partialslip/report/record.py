@@ -19,6 +19,7 @@ from partialslip.run.judge import Outcome, Verdict, conclude, conditions, of_run
 from partialslip.run.judge.comparison import judged_again
 from partialslip.run.judge.reference import reference_among
 from partialslip.run.judge.verdicts import missed_by
+from partialslip.run.tolerance import Propagation
 from partialslip.scene import Scene
 from partialslip.scene.plan import Effect, Plan
 from partialslip.tools.origin import Made, versions
@@ -121,6 +122,8 @@ class Record(ByMethod[ResultRecord], msgspec.Struct, frozen=True):
         Scatter due to the noise of a measured profile; None in ledgers.
     spacing : dict of str to float
         Errors due to the spacing of a tabulated profile.
+    tolerance : Propagation
+        What the tolerances of the scene allow; left out without tolerances.
     edited : bool or None
         Whether the file that the record was read from was changed since partialslip wrote it; None if the file has no
         checksum.
@@ -138,6 +141,7 @@ class Record(ByMethod[ResultRecord], msgspec.Struct, frozen=True):
     made: Made | None = None
     noise: Noise | None = None
     spacing: dict[str, float] = {}
+    tolerance: Propagation | msgspec.UnsetType = msgspec.UNSET
     edited: bool | None = False
 
     def __repr__(self) -> str:
@@ -198,6 +202,7 @@ def record(run: Run, *, curves: bool = True, made: Made | None = None) -> Record
         versions=versions(),
         made=made,
         noise=run.noise if curves else None,
+        tolerance=run.tolerance or msgspec.UNSET,
         edited=False,
     )
 

@@ -12,7 +12,7 @@ from partialslip.run import Run
 from partialslip.run.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
 from partialslip.run.judge.reference import error_of
 from partialslip.scene import Scene
-from partialslip.scene.dimensions import DIMENSIONS
+from partialslip.scene.dimensions import dimension
 from partialslip.scene.plan import Plan
 from partialslip.scene.plausible import implausible as implausible
 from partialslip.scene.reading import scene_tables
@@ -233,7 +233,7 @@ def _set(scene: Scene) -> dict[str, list[tuple[str, str]]]:
 
 def _with_unit(path: str, choice: object, units: Units) -> str:
     """Return a setting as text, numbers with their unit."""
-    unit = "a" if path in _IN_A else units.label(DIMENSIONS.get(path, "1"))
+    unit = "a" if path in _IN_A else units.label(dimension(path))
     return setting(choice) + (f" {unit}" if unit and not isinstance(choice, str) else "")
 
 

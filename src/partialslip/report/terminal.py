@@ -7,6 +7,7 @@ from rich.text import Text
 
 from partialslip.report import rows
 from partialslip.report.answer import answer_heading, answers
+from partialslip.report.tolerance import HEADINGS, allowed_lines, tolerance_heading, tolerance_lines, tolerance_rows
 from partialslip.run import Run
 from partialslip.tools.output.tables import print_lines, print_table
 
@@ -30,6 +31,11 @@ def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Seque
     console.print(title, style="bold", markup=False)
     console.print(answer_heading(run), markup=False)
     print_lines(console, [("", *line) for line in answers(run)])
+    if run.tolerance:
+        console.print(tolerance_heading(run.tolerance), soft_wrap=True, markup=False)
+        print_table(console, HEADINGS, tolerance_rows(run.tolerance, run.scene.units), words=(0, 1, 5))
+        for line in tolerance_lines(run.tolerance, run.scene.units):
+            console.print(line, soft_wrap=True, markup=False)
     compared = bool(run.comparisons)
     for name, comparison in run.comparisons.items():
         errors = [(*row, f"{bar} {word}".strip()) for *row, bar, word in rows.error_rows(comparison, every=verbose)]
@@ -43,7 +49,7 @@ def print_run(run: Run, console: Console, *, verbose: bool = False, lines: Seque
         print_lines(console, rows.methods_in_short(run.results))
     notes = [] if verbose else rows.run_notes(run)
     unjudged = [line for comparison in run.comparisons.values() for line in rows.unjudged(comparison)]
-    for line in (*rows.implausible(run.scene), *unjudged, *notes):
+    for line in (*rows.implausible(run.scene), *unjudged, *notes, *allowed_lines(run)):
         console.print(line, markup=False)
     *asked, verdict = rows.verdict_lines(run)
     for line in (*lines, *asked):

@@ -18,6 +18,7 @@ from partialslip.run.judge import Comparison, Conclusion, Outcome, Verdict, comp
 from partialslip.run.judge.reference import ALL_EFFECTS, estimated, reference, reference_among
 from partialslip.run.judge.verdicts import missed_by
 from partialslip.run.methods import SOLVERS, Means, Progress
+from partialslip.run.tolerance import Propagation
 from partialslip.scene import Effects, Scene
 from partialslip.scene.plan import Plan, plan, reduced
 from partialslip.scene.reading import AnyScene, as_scene
@@ -55,6 +56,8 @@ class Run(ByMethod[Result], Drawn):
     spacing : dict of str to float
         Errors of a, m and n (in a), p and q (relative L2) due to the spacing of a tabulated profile, which are no part
         of estimates, bars and verdicts (:func:`partialslip.halfplane.method.spacing_error`).
+    tolerance : Propagation or None
+        What the tolerances of the scene allow (:func:`partialslip.study.tolerance.with_tolerance`).
     """
 
     scene: Scene
@@ -63,6 +66,7 @@ class Run(ByMethod[Result], Drawn):
     comparisons: dict[str, Comparison]
     asked: Asked | None = None
     spacing: Mapping[str, float] = field(default_factory=dict)
+    tolerance: Propagation | None = None
 
     @property
     def _by_method(self) -> Mapping[str, Result]:

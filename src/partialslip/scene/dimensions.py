@@ -49,6 +49,11 @@ DIMENSIONS: dict[str, Dimension] = {
 }
 
 
+def dimension(path: str) -> Dimension:
+    """Return the dimension of the number at the dotted ``path`` of a scene; a tolerance has that of its input."""
+    return DIMENSIONS.get(path.removeprefix("tolerance.").removesuffix(".std"), "1")
+
+
 def with_units(data: Mapping[str, Any], convert: Callable[[float, Dimension], float]) -> dict[str, Any]:
     """Return the tables ``data`` of a scene with ``convert(number, dimension)`` of every number that has a dimension.
 
@@ -61,7 +66,7 @@ def with_units(data: Mapping[str, Any], convert: Callable[[float, Dimension], fl
             if path in _BODIES and value.get("mesh") is not None and value.get("unit") is None:
                 value = {**value, "unit": 1.0}
             return {key: each(child, f"{path}.{key}") for key, child in value.items()}
-        of = DIMENSIONS.get(path, "1")
+        of = dimension(path)
         if of == "1":
             return value
         if isinstance(value, (list, tuple)):

@@ -16,6 +16,7 @@ from partialslip.scene.materials import Material
 from partialslip.scene.profiles import FlatRounded, Hertz, Profile
 from partialslip.scene.settings import Effects, Fatigue, Fem
 from partialslip.scene.table import LARGEST, NO_TEXT, ROUGH, SMALLEST, STEEPEST, Table
+from partialslip.scene.tolerance import Tolerance, inputs
 from partialslip.scene.units import UNITS, System, Units
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
@@ -131,8 +132,8 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     ranges and raise InputError with the same one line. A scene is immutable: :meth:`replace` makes a changed one.
 
     ``name`` (letters, digits, ".", "_" and "-"), ``title``, and the tables ``material``, ``profile``, ``load``,
-    ``friction``, ``bodies``, ``fem``, ``effects`` and ``fatigue``. All numbers are in SI units. ``shown_in``: units of
-    tables, reports and CSV files, and of tables to score.
+    ``friction``, ``bodies``, ``fem``, ``effects``, ``fatigue`` and ``tolerance``. All numbers are in SI units.
+    ``shown_in``: units of tables, reports and CSV files, and of tables to score.
     """
 
     name: Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=100)]
@@ -145,6 +146,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     fem: Fem = Fem()
     effects: Effects = Effects()
     fatigue: Fatigue = Fatigue()
+    tolerance: Tolerance | None = None
     shown_in: System = "SI"
 
     def __post_init__(self) -> None:
@@ -177,6 +179,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         for name, body in self.bodies:
             if body.kind == "pad" and body.width is not None and body.height is not None:
                 self._check_pad(name, body.span, body.height)
+        inputs(self)
 
     def _check_driven(self, displacement: str) -> None:
         """Raise InputError if plates cannot drive the bodies."""

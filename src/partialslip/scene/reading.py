@@ -16,6 +16,7 @@ import tomli_w
 from partialslip.scene import LARGEST, SMALLEST, Scene, Table
 from partialslip.scene.dimensions import with_units
 from partialslip.scene.measured import ProfileFile, tabulated
+from partialslip.scene.tolerance import check
 from partialslip.scene.units import SI, UNITS, Units
 from partialslip.tools.errors import InputError
 from partialslip.tools.inputfile import read_text
@@ -154,7 +155,9 @@ def make_table(kind: type[_Made], data: Mapping[str, Any]) -> _Made:
         written["profile"] = _from_file(profile, units)
     made = _made(kind, place, written, written, units)
     # What a scene must be is the same in all units: checked as written, messages show the numbers that the user knows.
-    return made if units == SI else _made(kind, place, with_units(written, units.to_si), written, SI)
+    made = made if units == SI else _made(kind, place, with_units(written, units.to_si), written, SI)
+    check(made)  # type: ignore[arg-type]
+    return made
 
 
 def _from_file(profile: dict[str, Any], units: Units) -> dict[str, Any]:

@@ -194,12 +194,12 @@ def case_key(data: Mapping[str, Any]) -> str:
 def scene_content(scene: Scene) -> dict[str, Any]:
     """Return ``scene`` as plain data, with checksums of its mesh files (None for a file that cannot be read).
 
-    The units in which the scene is shown and the constants of fatigue criteria are left out: they change no result, and
-    entries are in SI units.
+    The units in which the scene is shown, the constants of fatigue criteria and tolerances are left out: they change no
+    result, and entries are in SI units.
     """
     files = [body.mesh for _, body in scene.bodies if body.mesh is not None]
     content = msgspec.to_builtins(scene)
-    del content["shown_in"], content["fatigue"]
+    del content["shown_in"], content["fatigue"], content["tolerance"]
     return {**content, "mesh files": {file: _sum_of_mesh(file) for file in files}}
 
 

@@ -28,7 +28,7 @@ from partialslip.tools.strictjson import decoded
 REQUEST_NAME = ".partialslip"
 # Files of results: a folder that holds one of them, but no request, was written by an earlier version or copied.
 RESULTS = ("results.json", "report.html", "ledger.jsonl", "effects.json", "fatigue.json", "map.csv", "page.html",
-           "meta.toml")  # fmt: skip
+           "tolerance.csv", "meta.toml")  # fmt: skip
 _TRIES, _PAUSE = 20, 0.1  # cost: s: the holder of a lock writes the request at once
 _LARGEST, _LARGEST_REQUEST = 2**40, 2**24  # limit: bytes of a file, and of a request
 _LONGEST, _MOST = 24, 3  # display: characters of a setting, and number of settings, in a message
