@@ -9,6 +9,7 @@ from quadrature import rule
 import partialslip
 from partialslip.halfplane import contact, layer
 from partialslip.halfplane import method as exact_method
+from partialslip.scene.bodies import Strips
 from partialslip.tools.errors import InputError
 
 E, NU, R, P, F = 72.1e9, 0.33, 0.01, 135.75e3, 0.3
@@ -53,6 +54,36 @@ def test_the_kernels_are_those_of_the_equations_of_equilibrium(w):
     G = 2 * w / (np.sinh(2 * w) + 2 * w)
     assert across == pytest.approx(G - (1 - 2 * NU) / (2 - 2 * NU), abs=1e-9)
     assert other == pytest.approx(across, abs=1e-9)
+
+
+def bonded(w):
+    kappa = 3 - 4 * NU
+    D = 2 * kappa * np.cosh(2 * w) + 1 + kappa**2 + 4 * w**2
+    along = (2 * kappa * np.sinh(2 * w) + np.array([-4, 4])[:, None] * w) / D
+    return *along, (kappa**2 - 1 + 4 * w**2) / D
+
+
+@pytest.mark.parametrize("w", [0.1, 1.0, 5.0])
+def test_the_kernels_of_bonded_layers_are_those_of_the_equations_of_equilibrium(w):
+    across, normal = layers.moved(w, NU, "normal", bonded=True)
+    along, _ = layers.moved(w, NU, "shear", bonded=True)
+    found = normal, along, across + (1 - 2 * NU) / (2 - 2 * NU)
+    assert found == pytest.approx([each[0] for each in bonded(np.array([w]))], rel=1e-8)
+    own = layer.Layer(Strips(1e-3, np.inf, (0.0, 0.0), 0.0, bonded=True), 3 - 4 * NU)
+    M, N, G = bonded(layer._W)
+    assert np.abs([own._rest["normal"] + 1 - M, own._rest["shear"] + 1 - N, own._across - G]).max() < 1e-14
+
+
+def test_clamped_blocks_are_bonded_layers():
+    body = {"height": 0.5e-3, "width": 10e-3, "support": "clamped"}
+    loads = {"P": P, "Q": [-20e3, 20e3], "sigma": [-50e6, 50e6]}
+    scene = plain(loads, friction={"f": F}, bodies={"upper": body, "lower": body}, fem={"accuracy": 1e-3})
+    run = partialslip.run(scene)
+    assert run.passed
+    half_planes = partialslip.run(scene.replace(effects={"finite_size": False}), "exact")["exact"]
+    off = {name: abs(run[name].m - half_planes.m) / half_planes.a for name in ("exact", "fem")}
+    assert off["exact"] > 0.02
+    assert run["fem"].m == pytest.approx(run["exact"].m, abs=2e-5 * half_planes.a)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ INNER, OUTER = np.cos(_J), np.cos(np.pi * (np.arange(COUNT + 1) + 0.5) / (COUNT 
 _SQUARES = np.pi / (COUNT + 1) * np.sin(_J) ** 2
 
 
-def moved(w, nu, traction):
+def moved(w, nu, traction, bonded=False):
     """Displacements (u, v) sin(k x), cos(k x) of the surface of a layer, times k E/(2(1 - nu^2)), under a pressure
     cos(k x), or a shear sin(k x) along x, by Navier's equations at Chebyshev points over the height w/k."""
     count = 40
@@ -27,8 +27,8 @@ def moved(w, nu, traction):
     along = np.hstack([mu * D @ D - (lam + 2 * mu) * one, -(lam + mu) * D])
     across = np.hstack([(lam + mu) * D, (lam + 2 * mu) * D @ D - mu * one])
     shear, normal = np.hstack([mu * D, -mu * one]), np.hstack([lam * one, (lam + 2 * mu) * D])
-    held = np.hstack([0 * one, one])
-    A = np.vstack([along[1:-1], across[1:-1], shear[[0, -1]], normal[:1], held[-1:]])
+    held, still = np.hstack([0 * one, one]), np.hstack([one, 0 * one]) if bonded else shear
+    A = np.vstack([along[1:-1], across[1:-1], shear[:1], still[-1:], normal[:1], held[-1:]])
     b = np.zeros(2 * count + 2)
     b[-4 if traction == "shear" else -2] = -1.0
     found = np.linalg.solve(A, b) / (2 * (1 - nu**2))

@@ -154,7 +154,8 @@ class Layer:
         at, slope = self._potential(z, acting.transform, along)
         mirrored, _ = self._potential(z.conj(), acting.transform, along)
         held = np.where(side > 0, *self.strips.held)
-        uniform = -(3 - self.kappa) / (1 + self.kappa) * acting.force if along == "normal" else acting.moment / self.height
+        widening = (3 - self.kappa) / (1 + self.kappa)
+        uniform = -widening * acting.force if along == "normal" else acting.moment / self.height
         across = side if along == "shear" else 1.0
         found = below_surface(at + uniform * held, mirrored + uniform * held, slope, z) * np.stack(
             [side**2, side**2, side]

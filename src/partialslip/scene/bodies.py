@@ -126,9 +126,10 @@ class Body(Table, frozen=True, kw_only=True):
 
 
 class Strips(NamedTuple):
-    """Two equal long blocks, on rollers or ``bonded`` to clamped backs: their ``height``, m; ``held``, 1/width of the lower and the upper block, 1/m,
-    or zero if not both sides are held along x; and the tension of the lower block, Pa per N/m of Q, that its grips make
-    of Q because they do not carry half of it each (``skew``). ``width`` is that of the shorter block, m.
+    """Two equal long blocks, on rollers or ``bonded`` to clamped backs: their ``height``, m; ``held``, 1/width of the
+    lower and the upper block, 1/m, or zero if not both sides are held along x; and the tension of the lower block, Pa
+    per N/m of Q, that its grips make of Q because they do not carry half of it each (``skew``). ``width`` is that of
+    the shorter block, m.
     """
 
     height: float
@@ -204,7 +205,8 @@ class Bodies(Table, frozen=True, kw_only=True):
             return Strips(upper.height, width, (0.0, 0.0), 0.0, bonded=True)
         loose = lower.pulled and not lower.gripped
         held = 0.0 if loose else 1 / lower.span, 1 / upper.span
-        return Strips(upper.height, width, held, (lower.right_share - 0.5) / upper.height if loose else 0.0, bonded=False)
+        skew = (lower.right_share - 0.5) / upper.height if loose else 0.0
+        return Strips(upper.height, width, held, skew, bonded=False)
 
     @property
     def pad(self) -> str | None:
