@@ -86,16 +86,16 @@ class Layer:
         result = -(self.transforms(t, forces).conj() * factors @ self.waves(x).T).real
         return np.asarray(result + float(forces @ t) * self._share * x)
 
-    def added(self, places: Array) -> Array:
-        """Mean displacements along x of cells with ends at ``places`` (c + 1,), m, under unit shear forces on cells,
-        that the layers add to those of half-planes, but for a rigid shift, in A: (c, c)."""
+    def added(self, places: Array, along: Along = "shear") -> Array:
+        """Mean displacements of cells with ends at ``places`` (c + 1,), m, under unit forces on cells ``along`` the
+        same way, that the layers add to those of half-planes, but for a rigid shift, in A: (c, c)."""
         middle, half = (places[1:] + places[:-1]) / 2, np.diff(places) / 2
         # -1/pi times the integral of k, whose waves have means over cells of their own
         means = self.waves(middle) * np.sinc(half[:, None] / (np.pi * self.height) * _W)
-        factors = _DW * _REST["shear"] / (np.pi * _W)
+        factors = _DW * _REST[along] / (np.pi * _W)
         result = ((means * factors) @ means.conj().T).real - factors.sum()
-        result -= self._share * np.outer(middle, middle)
-        return np.asarray(result)
+        held = self._share if along == "shear" else 0.0
+        return np.asarray(result - held * np.outer(middle, middle))
 
     def stresses(self, x: Array, depth: Array, side: Array, acting: "Acting", along: Along) -> Array:
         """Stresses (3, k) xx, yy, xy, Pa, that the layers add to those of half-planes at ``x`` (k,), m, at the
