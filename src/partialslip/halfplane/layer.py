@@ -20,6 +20,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from partialslip.result.below import below_surface
+from partialslip.scene import Scene
 from partialslip.scene.bodies import Strips
 from partialslip.tools.arrays import Array, Complex
 
@@ -44,6 +45,12 @@ class Layer:
 
     strips: Strips
     widening: float = 0.0
+
+    @classmethod
+    def of(cls, scene: Scene) -> "Layer | None":
+        """The layers of a ``scene``; None without strips."""
+        kappa = scene.material.bodies[0].kappa
+        return cls(scene.strips, (3 - kappa) / (1 + kappa)) if scene.strips else None
 
     @property
     def drags(self) -> bool:
@@ -90,12 +97,20 @@ class Layer:
         """Mean displacements of cells with ends at ``places`` (c + 1,), m, under unit forces on cells ``along`` the
         same way, that the layers add to those of half-planes, but for a rigid shift, in A: (c, c)."""
         middle, half = (places[1:] + places[:-1]) / 2, np.diff(places) / 2
-        # -1/pi times the integral of k, whose waves have means over cells of their own
         means = self.waves(middle) * np.sinc(half[:, None] / (np.pi * self.height) * _W)
-        factors = _DW * _REST[along] / (np.pi * _W)
-        result = ((means * factors) @ means.conj().T).real - factors.sum()
         held = self._share if along == "shear" else 0.0
-        return np.asarray(result - held * np.outer(middle, middle))
+        return _moved(means, along) - held * np.outer(middle, middle)
+
+    def moved(self, x: Array, along: Along) -> Array:
+        """Displacements at ``x`` (n,), m, under unit forces at these points ``along`` the same way, that layers without
+        sides add to those of half-planes, but for a rigid shift, in A: (n, n)."""
+        return _moved(self.waves(x), along)
+
+    def moved_across(self, x: Array) -> Array:
+        """Displacements along x of the lower surface at ``x`` (n,), m, under unit forces that press at these points,
+        that layers without sides add to those of half-planes, in A: (n, n)."""
+        waves = self.waves(x)
+        return np.asarray(((waves * (_DW * _ACROSS / (2 * np.pi * _W))) @ waves.conj().T).imag)
 
     def stresses(self, x: Array, depth: Array, side: Array, acting: "Acting", along: Along) -> Array:
         """Stresses (3, k) xx, yy, xy, Pa, that the layers add to those of half-planes at ``x`` (k,), m, at the
@@ -138,6 +153,12 @@ class Layer:
         c, s = (np.asarray(of(angle), complex) for of in (np.cos, np.sin))
         slope = np.asarray(c @ (scale * w * sine) - s @ (scale * w * cosine), complex)
         return np.asarray(c @ (scale * cosine) + s @ (scale * sine), complex), slope
+
+
+def _moved(waves: Complex, along: Along) -> Array:
+    """-1/pi times the integral of k(x - t), whose ``waves`` (n, w) at x and t are given, (n, n)."""
+    factors = _DW * _REST[along] / (np.pi * _W)
+    return np.asarray(((waves * factors) @ waves.conj().T).real - factors.sum())
 
 
 class Acting(NamedTuple):

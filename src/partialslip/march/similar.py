@@ -39,7 +39,6 @@ from partialslip.result.state import State
 from partialslip.scene import Scene
 from partialslip.scene.plan import Plan
 from partialslip.tools.arrays import Array
-from partialslip.tools.errors import InputError
 
 _AT_BENDS = 32.0  # cost: most size of cells at kinks of the coefficient of friction, over the size at the ends
 _WORK = 5e11  # limit: cells^3 times load steps of a mesh
@@ -81,9 +80,6 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         self.normal, path = NormalLoads.of(scene), load_path(scene, plan, start)
         frame = self.normal.frame
         self.added = frame.layer.added if frame.layer else added
-        if self.drags and scene.presses_anew:
-            why = "as pressing drags bodies that are not held alike; use fem, or bodies.*.width = 'infinite'"
-            raise InputError(f"load.{scene.varying[0]}: must be constant for march, {why}")
         super().__init__(scene, start, clock, path, (frame.centre, frame.a))
         self._ends = [*self.normal.ends, *self.normal.within(scene.profile.kinks)]
         self._inner = self.normal.within(finest(start.q.x)) if start else []

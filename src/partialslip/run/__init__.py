@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 from msgspec.structs import replace
 
+from partialslip.halfplane.layer import Layer
 from partialslip.halfplane.method import has_closed_form, spacing_error
 from partialslip.halfplane.noise import Noise, noise_of
+from partialslip.march.equivalent.strips import rig_of_strips
 from partialslip.result import Result
 from partialslip.result.rig import Rig, key_of, load_rig
 from partialslip.result.state import State
@@ -363,7 +365,8 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: Acc
 
 
 def characterise(scene: AnyScene) -> Rig:
-    """Find by finite elements what the bodies of ``scene``, a scene, name or path, add to half-planes: its rig.
+    """Find what the bodies of ``scene``, a scene, name or path, add to half-planes, its rig: by finite elements, of two
+    equal strips by closed kernels.
 
     The rig depends on the bodies, their supports and materials, and on the profile only if a body is a pad. It is kept
     for further calls with the same bodies. :func:`partialslip.result.rig.write_rig` writes it to a file, which a scene
@@ -377,11 +380,14 @@ def characterise(scene: AnyScene) -> Rig:
     scene = as_scene(scene)
     key = key_of(scene)
     if key not in _rigs:
-        from partialslip_fem.characterise import characterise_bodies as characterised
-
         while len(_rigs) >= _KEPT:
             _rigs.pop(next(iter(_rigs)))
-        _rigs[key] = characterised(scene)
+        if layer := Layer.of(scene):
+            _rigs[key] = rig_of_strips(scene, layer)
+        else:
+            from partialslip_fem.characterise import characterise_bodies
+
+            _rigs[key] = characterise_bodies(scene)
     return _rigs[key]
 
 
