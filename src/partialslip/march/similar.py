@@ -134,7 +134,7 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         q1, q2 = (scene.P / frame.a * q / widths for q in (history.q1, history.q2)) if history else (0 * x, 0 * x)
         known = found.centre is not None and not self.drags
         if found.centre is not None and self.drags:
-            unknown = dict.fromkeys(("q1", "q2"), PRESSED) | found.undetermined
+            unknown = {**dict.fromkeys(("q1", "q2"), PRESSED), **found.undetermined}
             found = found._replace(undetermined=unknown, notes=(*found.notes, f"q1 and q2: {PRESSED}"))
         several = scene.friction.varies and history and sticking_zones(history.bound, history.change) > 1
         if several:

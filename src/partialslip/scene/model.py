@@ -305,7 +305,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
     @property
     def half_planes(self) -> "Scene":
         """The scene with half-planes in the place of its bodies."""
-        return msgspec.structs.replace(self, bodies=Bodies())
+        return self.replace(bodies=Bodies(), effects={"finite-size": None})
 
     def at_right_grip(self, Q: npt.ArrayLike, sigma: npt.ArrayLike) -> Array:
         """Tension on the right side of a ``pulled`` body, Pa: the bulk tension ``sigma`` (Pa), and what the grip there

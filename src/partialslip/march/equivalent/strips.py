@@ -15,7 +15,8 @@ _TERMS, _FEWER = 16, 13  # accuracy: of each polynomial, to about 1e-12, and of 
 def rig_of_strips(scene: Scene, layer: Layer) -> Rig:
     """The rig of the strips of ``scene``, two equal ``layer``."""
     reach = _REACH * layer.height
-    return Rig(key_of(scene), reach, *(_terms(scene, layer, reach, count) for count in (_TERMS, _FEWER)))
+    fine, rough = (_terms(scene, layer, reach, count) for count in (_TERMS, _FEWER))
+    return Rig(key_of(scene), reach, fine, rough)
 
 
 def _terms(scene: Scene, layer: Layer, reach: float, count: int) -> Terms:
@@ -40,4 +41,6 @@ def _terms(scene: Scene, layer: Layer, reach: float, count: int) -> Terms:
         across[body][1, 0] += way * held * reach * layer.widening / 4
     if lower and lower.pulled and not lower.gripped:  # the left side carries Q: half of it as tension
         halves[0][[0, 1], [1, 0]] += reach / (8 * layer.height)
-    return Terms(sum(halves), normal, across.sum(axis=0), np.zeros((2, _TERMS)), halves[0], normal / 2, across[0])
+    return Terms(
+        halves[0] + halves[1], normal, across.sum(axis=0), np.zeros((2, _TERMS)), halves[0], normal / 2, across[0]
+    )

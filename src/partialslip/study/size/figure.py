@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from partialslip.study.size.case import EQUIVALENT, HALF_PLANE
-from partialslip.study.size.law import Kind, Needed, Sizes, Trend
-from partialslip.study.size.tables import NAMES, SizeStudy, percent, size_text
+from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, STRIPS
+from partialslip.study.size.law import NAMES, Kind, Needed, Sizes, Trend
+from partialslip.study.size.tables import SizeStudy, percent, size_text
 from partialslip.tools.arrays import Array
 from partialslip.tools.output.svg import svg
 
@@ -35,8 +35,8 @@ _OF_A = ("m", "n")  # quantities whose differences are in a
 def size_svg(study: SizeStudy) -> str:
     """Return the differences of ``study`` over the size as SVG, a panel for each quantity; one size at least is solved.
 
-    Circles are the half-plane's, squares those of equivalent half-planes. Horizontal lines are the levels; where a
-    level is kept from a size on, a line falls from there to the axis, beside the number.
+    Circles are the half-plane's, squares those of equivalent half-planes, triangles those of exact strips. Horizontal
+    lines are the levels; where a level is kept from a size on, a line falls from there to the axis, beside the number.
     """
     trends = study.trends
     found = [quantity for quantity in study.quantities if any(trend.quantity == quantity for trend in trends)]
@@ -172,9 +172,10 @@ def _put_ticks(axis: "XAxis | YAxis", values: Sequence[float], room: Callable[[s
 
 _MODELS: dict[str, dict[str, Any]] = {
     HALF_PLANE: {"marker": "o", "ls": "-", "ms": 5, "mfc": "black", "lw": 1.2},
+    STRIPS: {"marker": "^", "ls": ":", "ms": 5, "mfc": "white", "lw": 1.2},
     EQUIVALENT: {"marker": "s", "ls": "--", "ms": 5, "mfc": "white", "lw": 1.2},
 }
-_SHORT = {HALF_PLANE: "half-planes", EQUIVALENT: "equivalent"}
+_SHORT = {HALF_PLANE: "half-planes", EQUIVALENT: "equivalent", STRIPS: "strips"}
 _LEVEL: dict[str, Any] = {"color": "0.5", "lw": 0.7}
 _BEYOND: dict[str, Any] = {"color": "black", "lw": 1.0, "ls": ":"}
 _MESH: dict[str, Any] = {"color": "0.9", "lw": 0, "zorder": -1}
