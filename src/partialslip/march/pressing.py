@@ -95,8 +95,8 @@ class NormalLoads:
         return of.P / self.scene.P * forces(of.shape, of.scaled(self.frame.places(vertices)))
 
     def presses(self, vertices: Array, compliance: Array) -> Presses:
-        """The contact problem of the cells, with the ``compliance`` (c, c) of half-planes. Pressure and shear must be in
-        equilibrium on the same cells, as the displacements with which cells touch are those of the pressure times a
+        """The contact problem of the cells, with the ``compliance`` (c, c) of half-planes. Pressure and shear must be
+        in equilibrium on the same cells, as the displacements with which cells touch are those of the pressure times a
         factor."""
         scene, places = self.scene, self.frame.places(vertices)
         middle, half = (places[1:] + places[:-1]) / 2, np.diff(places)[:, None] / 2

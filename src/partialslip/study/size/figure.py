@@ -23,7 +23,9 @@ CAPTION = "How far half-planes are off, over the size; marks and numbers: from t
 _LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # display: contours of the change
 _WIDTH, _HIGH = 4.2, 1.8  # display: of the figure and of a panel, inches: read at a width of 9 cm
 _FARTHEST = 10.0  # display: times the largest size: what is shown of extrapolated sizes
-_BELOW = 1e-3  # display: of the largest level: smallest difference that is shown, but for smaller levels
+# display: of the largest level: smallest difference that is shown, but for smaller levels; the same with exact strips
+_BELOW, _BELOW_STRIPS = 1e-3, 1e-5
+_DECADES = 5  # display: most decades that all have a tick
 _MARGIN = 1.3  # display: factor beyond the ends of the axis of differences
 _LINE = 56  # display: characters of a title
 _LABEL = 48  # display: characters of a label of the axis
@@ -47,7 +49,8 @@ def size_svg(study: SizeStudy) -> str:
         panels = figure.subplots(len(found), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
         _put_sizes(panels[0], study)
         panels[0].set_ylim(low / _MARGIN, high * _MARGIN)
-        decades = [10.0**k for k in range(round(math.log10(low)), round(math.log10(high)) + 1)]
+        first, last = (round(math.log10(each)) for each in (low, high))
+        decades = [10.0**k for k in range(last, first - 1, -2 if last - first > _DECADES else -1)]
         panels[0].set_yticks(decades, [percent(each) for each in decades], minor=False)
         panels[0].yaxis.minorticks_off()
         for axes, quantity in zip(panels, found, strict=True):
@@ -65,7 +68,8 @@ def _decades(study: SizeStudy, levels: Sequence[float]) -> tuple[float, float]:
     """Return the powers of ten between which differences are shown."""
     off = np.concatenate([found for model in study.models for found in model.off.values()])
     off = off[off > 0]
-    low = min(max(off.min(initial=levels[0]), _BELOW * levels[-1]), levels[0])
+    least = _BELOW_STRIPS if any(model.name == STRIPS for model in study.models) else _BELOW
+    low = min(max(off.min(initial=levels[0]), least * levels[-1]), levels[0])
     high = max(off.max(initial=levels[-1]), levels[-1])
     return 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high))
 
