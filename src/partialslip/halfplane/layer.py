@@ -63,6 +63,7 @@ class Layer:
 
     @property
     def height(self) -> float:
+        """Height of each layer, m."""
         return self.strips.height
 
     def waves(self, x: Array) -> Complex:

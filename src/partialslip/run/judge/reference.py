@@ -43,7 +43,8 @@ def reference(scene: Scene) -> Reference:
     Similar half-planes: exact where the steady state is known exactly, march elsewhere. Where slip reverses between the
     load points the closed form, which goes there in one step, does not hold; exact then follows gradual loads. Where it
     cannot, or where the pressure varies, neither exact nor march is a reference for m, n and the shear. Two equal
-    strips are like half-planes, but for a pressure that varies: march. Other finite bodies and dissimilar materials: fem.
+    strips are like half-planes, but march is their reference where the pressure varies. Other finite bodies and
+    dissimilar materials: fem.
     """
     if scene.sized or not scene.material.alike:
         return Reference("fem")
