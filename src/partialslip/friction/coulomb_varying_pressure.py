@@ -54,9 +54,8 @@ def march(
     f : (n,) array
         Coefficient of friction.
     press : Presses
-        Normal forces (n,) under any P and M. Where surfaces stick while the contact grows, they must come from the
-        compliance ``tangential``, which is also the one along y of half-planes: a difference between the
-        discretisations of both would be locked in.
+        Normal forces (n,) under any P and M. Where surfaces stick while the contact grows, their compliance must be
+        discretised as ``tangential`` is, and the same for half-planes: a difference would be locked in.
     path : Path
     few : int
         As for :func:`partialslip.friction.coulomb_varying_events.march`.
@@ -85,7 +84,7 @@ def march(
         free = tangential @ before.x + change[1] * stretch[0] + change[2] * stretch[1] - drift
         bound = f * normal.x
         require_carried([Q], float(bound.sum()))
-        step = _Step(x, tangential, free, bound, Q, attached)
+        step = _Step(x, tangential, press.normal, free, bound, Q, attached)
         found = step.solve(pressed[-1].x, normal.x, near)
         moved = tangential @ found.x - free
         sticks = (normal.x > 0) & (found.sides == 0)
@@ -107,11 +106,14 @@ def _spanned(forces: Array) -> Mask:
 
 
 class _Step:
-    """One load step: nodes ``x`` (n,), compliance, ``free`` relative displacement, ``bound`` (n,), zero at nodes that
-    are open at the end of the step, shear force ``Q``, and the nodes that are ``attached`` before the step (n,)."""
+    """One load step: nodes ``x`` (n,), compliances along x and y (n, n), ``free`` relative displacement, ``bound``
+    (n,), zero at nodes that are open at the end of the step, shear force ``Q``, and the nodes that are ``attached``
+    before the step (n,)."""
 
-    def __init__(self, x: Array, tangential: Array, free: Array, bound: Array, Q: float, attached: Mask) -> None:
-        self._x, self._C, self._free, self._bound, self._Q = x, tangential, free, bound, Q
+    def __init__(
+        self, x: Array, tangential: Array, normal: Array, free: Array, bound: Array, Q: float, attached: Mask
+    ) -> None:
+        self._x, self._C, self._normal, self._free, self._bound, self._Q = x, tangential, normal, free, bound, Q
         self._attached = attached
         self._on = np.flatnonzero(bound > 0)
         self._inner = submatrix(tangential, self._on, self._on)
@@ -163,7 +165,7 @@ class _Step:
         new, both = on & ~self._attached, np.flatnonzero(on & (before > 0))
         if not new.any() or len(both) < 2:
             return np.empty((0, len(x))), np.empty((0, len(x)))
-        approach = self._C @ (after - before)
+        approach = self._normal @ (after - before)
         rigid = np.polynomial.polynomial.polyfit(x[both], approach[both], 1)  # approach, and rotation by a moment
         closing = approach - np.polynomial.polynomial.polyval(x, rigid)
         kept, ratios = [], []

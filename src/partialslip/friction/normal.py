@@ -77,6 +77,7 @@ class Presses:
     def __init__(
         self, normal: Array, gap: Array, arms: Array | None, start: Callable[[float, float], Near] | None = None
     ) -> None:
+        self.normal = normal
         self._problem = normal, gap
         self._arms, self._start = arms, start
         self._near: Near | None = None

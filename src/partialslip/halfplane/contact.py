@@ -103,9 +103,9 @@ def contact(scene: Scene, pressing: Pressing | None = None) -> Contact:
         to extend beyond the flat.
     """
     P, M = pressing or (scene.P, scene.M)
-    if not scene.strips:
+    layer = Layer.of(scene)
+    if not layer:
         return rubbing(_normal_contact(scene, Pressing(P, M)), scene)
-    layer = Layer(scene.strips, scene.material.bodies[0].kappa)
     return rubbing(on_layers(layer, scene.material.A, P, partial(_half_planes, scene), scene.profile.even), scene)
 
 

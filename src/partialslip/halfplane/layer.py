@@ -27,6 +27,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from partialslip.result.below import below_surface
+from partialslip.scene import Scene
 from partialslip.scene.bodies import Strips
 from partialslip.tools.arrays import Array, Complex
 
@@ -80,6 +81,16 @@ class Layer:
         kappa = self.kappa
         return float(brentq(lambda v: 2 * kappa * math.cos(2 * v) + 1 + kappa**2 - 4 * v**2, 0.5, 1.5))
 
+    @classmethod
+    def of(cls, scene: Scene) -> "Layer | None":
+        """The layers of a ``scene``; None without strips."""
+        return cls(scene.strips, scene.material.bodies[0].kappa) if scene.strips else None
+
+    @property
+    def widening(self) -> float:
+        """nu/(1 - nu) in plane strain, nu in plane stress."""
+        return (3 - self.kappa) / (1 + self.kappa)
+
     @property
     def drags(self) -> bool:
         """Whether pressing strains the layers along x relative to each other: the sides of one alone are held."""
@@ -91,7 +102,7 @@ class Layer:
 
     @property
     def height(self) -> float:
-        """Height of a layer, m."""
+        """Height of each layer, m."""
         return self.strips.height
 
     def left_out(self, a: float) -> dict[str, float]:
@@ -130,16 +141,29 @@ class Layer:
         result = -(self.transforms(t, forces).conj() * factors @ self.waves(x).T).real
         return np.asarray(result + float(forces @ t) * self._share * x)
 
-    def added(self, places: Array) -> Array:
-        """Mean displacements along x of cells with ends at ``places`` (c + 1,), m, under unit shear forces on cells,
-        that the layers add to those of half-planes, but for a rigid shift, in A: (c, c)."""
+    def added(self, places: Array, along: Along = "shear") -> Array:
+        """Mean displacements of cells with ends at ``places`` (c + 1,), m, under unit forces on cells ``along`` the
+        same way, that the layers add to those of half-planes, but for a rigid shift, in A: (c, c)."""
         middle, half = (places[1:] + places[:-1]) / 2, np.diff(places) / 2
-        # -1/pi times the integral of k, whose waves have means over cells of their own
         means = self.waves(middle) * np.sinc(half[:, None] / (np.pi * self.height) * _W)
-        factors = _DW * self._rest["shear"] / (np.pi * _W)
-        result = ((means * factors) @ means.conj().T).real - factors.sum()
-        result -= self._share * np.outer(middle, middle)
-        return np.asarray(result)
+        held = self._share if along == "shear" else 0.0
+        return self._moved(means, along) - held * np.outer(middle, middle)
+
+    def moved(self, x: Array, along: Along) -> Array:
+        """Displacements at ``x`` (n,), m, under unit forces at these points ``along`` the same way, that layers without
+        sides add to those of half-planes, but for a rigid shift, in A: (n, n)."""
+        return self._moved(self.waves(x), along)
+
+    def _moved(self, waves: Complex, along: Along) -> Array:
+        """-1/pi times the integral of k(x - t), whose ``waves`` (n, w) at x and t are given, (n, n)."""
+        factors = _DW * self._rest[along] / (np.pi * _W)
+        return np.asarray(((waves * factors) @ waves.conj().T).real - factors.sum())
+
+    def moved_across(self, x: Array) -> Array:
+        """Displacements along x of the lower surface at ``x`` (n,), m, under unit forces that press at these points,
+        that layers without sides add to those of half-planes, in A: (n, n)."""
+        waves = self.waves(x)
+        return np.asarray(((waves * (_DW * self._across / (2 * np.pi * _W))) @ waves.conj().T).imag)
 
     def stresses(self, x: Array, depth: Array, side: Array, acting: "Acting", along: Along) -> Array:
         """Stresses (3, k) xx, yy, xy, Pa, that the layers add to those of half-planes at ``x`` (k,), m, at the
@@ -154,8 +178,7 @@ class Layer:
         at, slope = self._potential(z, acting.transform, along)
         mirrored, _ = self._potential(z.conj(), acting.transform, along)
         held = np.where(side > 0, *self.strips.held)
-        widening = (3 - self.kappa) / (1 + self.kappa)
-        uniform = -widening * acting.force if along == "normal" else acting.moment / self.height
+        uniform = -self.widening * acting.force if along == "normal" else acting.moment / self.height
         across = side if along == "shear" else 1.0
         found = below_surface(at + uniform * held, mirrored + uniform * held, slope, z) * np.stack(
             [side**2, side**2, side]

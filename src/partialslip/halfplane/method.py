@@ -72,13 +72,13 @@ def has_closed_form(scene: Scene) -> bool:
     by formulas, quadratures or an integral equation; under constant pressure unless sigma_slope is too large or f
     varies so much along x that more than one zone sticks."""
     scene = scene.evenly_gripped
+    if scene.strips and scene.presses_anew:
+        return False
     if not (
         (scene.presses_anew or scene.load.dslope or scene.friction.varies or scene.strips)
         and plan(scene).needs("friction")
     ):
         return True
-    if scene.strips and scene.presses_anew:
-        return False
     try:
         return not closed_form(scene) if scene.presses_anew else bool(_change(scene).cycle)
     except InputError:

@@ -8,6 +8,7 @@ import numpy as np
 
 from partialslip.friction.history import Steps
 from partialslip.halfplane.contact import Contact, contact
+from partialslip.halfplane.layer import Acting
 from partialslip.halfplane.stress import Fields, Integrals, Points, SlipZones, StressState
 from partialslip.march.pressing import NormalLoads
 from partialslip.result.below import PiecewiseCauchy, under_shear
@@ -17,6 +18,7 @@ from partialslip.tools.arrays import Array, Complex, Mask
 _SLIPS = 1e-9  # accuracy: distance of |q| from f p, relative, at which a cell slips
 _WINDOW = 5  # accuracy: vertices of the polynomial through the resultants around a vertex
 _LOAD_POINTS = np.array([0.0, 0.5])
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # accuracy: of the shear of a cell that layers see
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,18 @@ class CellStresses:
         result = self._pressed.at(at, [self.states[step] for step in steps], integrals)
         T, T_z = sheared
         result += np.moveaxis(under_shear(T, -at.depth / self.frame.a * T_z, at.side), 1, 0)
+        if layer := self.frame.layer:
+            result += np.stack([layer.stresses(*at, self._seen_by_layers(step), "shear") for step in steps])
         return result
+
+    def _seen_by_layers(self, step: int) -> Acting:
+        """The shear of :attr:`_sheared` at a ``step``, at the nodes of Gauss's rule in each cell."""
+        assert self.frame.layer
+        half, c = np.diff(self.vertices)[:, None] / 2, self._smoothed[step][:, :, None]
+        t = half * (1 + _NODES)
+        forces = self.frame.a * half * _WEIGHTS * ((c[0] * t + c[1]) * t + c[2])
+        places = self.frame.places(self.vertices[:-1, None] + t)
+        return Acting.of(self.frame.layer, places.ravel(), forces.ravel())
 
     @cached_property
     def _pressed(self) -> Fields:
@@ -99,6 +112,11 @@ class CellStresses:
 
     @cached_property
     def _sheared(self) -> PiecewiseCauchy:
+        return PiecewiseCauchy(self.vertices, self._smoothed)
+
+    @cached_property
+    def _smoothed(self) -> Array:
+        """Shear beside the slip zones at the ends of the contact, Pa, (s, 3, c), as of :func:`smoothed`."""
         places, forces = self.frame.places(self.vertices), self.frame.P / self.frame.a * self.steps.forces
         bounds = self.steps.bounds * (self.frame.P / self.frame.a)
         limits = {state.pressed: self.f * state.pressed.pressure(places) for state in self.states}
@@ -106,7 +124,7 @@ class CellStresses:
             smoothed(self.vertices, force, bound, limits[state.pressed])
             for force, bound, state in zip(forces, bounds, self.states, strict=True)
         ]
-        return PiecewiseCauchy(self.vertices, np.array(rows))
+        return np.array(rows)
 
 
 def _end_runs(forces: Array, bounds: Array) -> tuple[int, int]:

@@ -53,7 +53,9 @@ class NormalLoads:
         ends = np.array([contact(scene, pressing).ends for pressing in dict.fromkeys(between)])
         left, right = float(ends[:, 0].min()), float(ends[:, 1].max())
         centre = first.centre if scene.even else (left + right) / 2
-        return cls(scene, Contact((right - left) / 2, scene.P, Mean(first, second), centre), first, second)
+        return cls(
+            scene, Contact((right - left) / 2, scene.P, Mean(first, second), centre, layer=first.layer), first, second
+        )
 
     @property
     def largest(self) -> Contact:
@@ -93,10 +95,13 @@ class NormalLoads:
         return of.P / self.scene.P * forces(of.shape, of.scaled(self.frame.places(vertices)))
 
     def presses(self, vertices: Array, compliance: Array) -> Presses:
-        """The contact problem of the cells: pressure and shear must be in equilibrium on the same cells, as the
-        displacements with which cells touch are those of the pressure times a factor."""
+        """The contact problem of the cells, with the ``compliance`` (c, c) of half-planes. Pressure and shear must be
+        in equilibrium on the same cells, as the displacements with which cells touch are those of the pressure times a
+        factor."""
         scene, places = self.scene, self.frame.places(vertices)
         middle, half = (places[1:] + places[:-1]) / 2, np.diff(places)[:, None] / 2
+        if self.frame.layer:
+            compliance = compliance + self.frame.layer.added(places, "normal")
         gap = scene.profile.gap_at(middle[:, None] + half * _NODES) @ (_WEIGHTS / 2)
         unit = scene.material.A * scene.P  # of displacement
         arms = None if scene.M is None else (middle - scene.origin) / scene.length

@@ -18,6 +18,7 @@ from partialslip.friction.step_errors import Errors, of_steps, steps_matter
 from partialslip.friction.steps import follow_or_step
 from partialslip.friction.warm_start import Trail
 from partialslip.friction.zone_ends import finest, sticking_zones
+from partialslip.halfplane.levels import PRESSED
 from partialslip.halfplane.remarks import no_stresses
 from partialslip.halfplane.states import Around, sliding_state, without_shear
 from partialslip.halfplane.stress import SURFACE_REACH, along_surface
@@ -84,6 +85,11 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         self._inner = self.normal.within(finest(start.q.x)) if start else []
         self._friction = self.normal.within(scene.friction.sharp_kinks(self.length))
 
+    @property
+    def drags(self) -> bool:
+        """Whether pressing locks in shear that is not followed."""
+        return bool(self.normal.frame.layer and self.normal.frame.layer.drags)
+
     def cells(self, level: SimilarLevel | None, mesh: tuple[float, float]) -> Array:
         ends = [*self._ends, *(level.zone if level else ())]
         moving = level.passing if level else ()
@@ -126,7 +132,10 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
         x = (places[1:] + places[:-1]) / 2
         found = steady_state(scene, history, level.stick, 1.0, x=level.x, common=normal.common if anew else None)
         q1, q2 = (scene.P / frame.a * q / widths for q in (history.q1, history.q2)) if history else (0 * x, 0 * x)
-        known = found.centre is not None
+        known = found.centre is not None and not self.drags
+        if found.centre is not None and self.drags:
+            unknown = {**dict.fromkeys(("q1", "q2"), PRESSED), **found.undetermined}
+            found = found._replace(undetermined=unknown, notes=(*found.notes, f"q1 and q2: {PRESSED}"))
         several = scene.friction.varies and history and sticking_zones(history.bound, history.change) > 1
         if several:
             found = found._replace(undetermined={**found.undetermined, **dict.fromkeys("mn", _SEVERAL)})
@@ -157,13 +166,16 @@ class SimilarBodies(driver.CellProblem[SimilarLevel]):
 
 def add_stresses(found: Result, normal: NormalLoads, level: SimilarLevel, clock: Clock) -> Result:
     """Result with stresses, where q1 and q2 are known."""
-    scene = normal.scene
-    if level.history:
-        stresses: CellStresses | Around | None = CellStresses.of(normal, level.vertices, level.history.around)
+    scene, why = normal.scene, "the contact slides"
+    stresses: CellStresses | Around | None = None
+    if PRESSED in found.undetermined.values():
+        why = PRESSED
+    elif level.history:
+        stresses = CellStresses.of(normal, level.vertices, level.history.around)
     else:
         stresses = sliding_state(scene) if scene.slides else without_shear(scene)
     if not stresses:
-        return replace(found, undetermined={**found.undetermined, **no_stresses("the contact slides")})
+        return replace(found, undetermined={**found.undetermined, **no_stresses(why)})
     far = normal.frame.places([-SURFACE_REACH, SURFACE_REACH])
     breaks = np.unique([*far, *normal.frame.places([*normal.ends, *level.zone])])
     surface = along_surface(stresses.surface, breaks)

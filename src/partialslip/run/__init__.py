@@ -372,7 +372,8 @@ def compared(scene: Scene, plan: Plan, results: dict[str, Result], accuracy: Acc
 
 
 def characterise(scene: AnyScene) -> Rig:
-    """Find by finite elements what the bodies of ``scene``, a scene, name or path, add to half-planes: its rig.
+    """Find what the bodies of ``scene``, a scene, name or path, add to half-planes, its rig: by finite elements, of two
+    equal strips by closed kernels.
 
     The rig depends on the bodies, their supports and materials, and on the profile only if a body is a pad. It is kept
     for further calls with the same bodies. :func:`partialslip.result.rig.write_rig` writes it to a file, which a scene
@@ -386,11 +387,17 @@ def characterise(scene: AnyScene) -> Rig:
     scene = as_scene(scene)
     key = key_of(scene)
     if key not in _rigs:
-        from partialslip_fem.characterise import characterise_bodies as characterised
-
         while len(_rigs) >= _KEPT:
             _rigs.pop(next(iter(_rigs)))
-        _rigs[key] = characterised(scene)
+        from partialslip.halfplane.layer import Layer  # takes long to import
+        from partialslip.march.equivalent.strips import rig_of_strips
+
+        if layer := Layer.of(scene):
+            _rigs[key] = rig_of_strips(scene, layer)
+        else:
+            from partialslip_fem.characterise import characterise_bodies
+
+            _rigs[key] = characterise_bodies(scene)
     return _rigs[key]
 
 

@@ -295,13 +295,20 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
 
     @property
     def strips(self) -> Strips | None:
-        """The bodies, if they are two equal long strips of one material, which exact and march solve as such."""
-        return self.bodies.strips if self.material.alike else None
+        """The bodies, if they are two equal long strips of one material, which exact and march solve as such: unless a
+        pressure that varies drags them."""
+        found = self.bodies.strips if self.material.alike else None
+        return None if found and self.presses_anew and len(set(found.held)) > 1 else found
 
     @property
     def sized(self) -> bool:
         """Whether a body has a size that exact and march do not know: in its place they solve half-planes."""
         return self.finite and not self.strips
+
+    @property
+    def half_planes(self) -> "Scene":
+        """The scene with half-planes in the place of its bodies."""
+        return self.replace(bodies=Bodies(), effects={"finite-size": None})
 
     def at_right_grip(self, Q: npt.ArrayLike, sigma: npt.ArrayLike) -> Array:
         """Tension on the right side of a ``pulled`` body, Pa: the bulk tension ``sigma`` (Pa), and what the grip there

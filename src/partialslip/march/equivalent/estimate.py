@@ -20,6 +20,8 @@ from partialslip.scene import Scene
 from partialslip.tools.arrays import Array
 
 _MESH = 0.25  # accuracy: error of the rig, in its difference from the rig of the coarser mesh
+# accuracy: factors of what is left out: it changes itself; and q has kinks that move by less than points are apart
+_NEARLY, _KINKED = 1.1, 1.5
 _WAY = 2.0  # accuracy: factor of what is left out where the pressure moves
 _MORE = 1e-4  # accuracy: of P
 _ANGLES = np.pi * (np.arange(200) + 0.5) / 200
@@ -89,6 +91,7 @@ def estimate(
         middle, c = own.change.mirror * own.change.zone.centre, own.change.zone.half_width
         rest = _series((data.strain_rest[first] - data.strain_rest[second]) / 4)
         left_out["q"] += _norm(rest((_PLACES - middle) / c)) / (_norm(own.dq(own.mean.places(_PLACES))) or 1.0)
+    left_out = {key: (_KINKED if key == "q" else _NEARLY) * error for key, error in left_out.items()}
     if np.ptp(data.tilt):  # the pressure moves, and the way from load point to load point is not followed
         left_out = {key: _WAY * error for key, error in left_out.items()}
     mesh = {key: _MESH * error for key, error in own.apart(_look(coarser), a).items()}

@@ -43,12 +43,13 @@ def reference(scene: Scene) -> Reference:
     Similar half-planes: exact where the steady state is known exactly, march elsewhere. Where slip reverses between the
     load points the closed form, which goes there in one step, does not hold; exact then follows gradual loads. Where it
     cannot, or where the pressure varies, neither exact nor march is a reference for m, n and the shear. Two equal
-    strips are like half-planes. Other finite bodies and dissimilar materials: fem.
+    strips are like half-planes, but march is their reference where the pressure varies. Other finite bodies and
+    dissimilar materials: fem.
     """
     if scene.sized or not scene.material.alike:
         return Reference("fem")
     own = reduced(scene)
-    if not own.load.in_phase:
+    if not own.load.in_phase or (own.strips and own.presses_anew):
         return Reference("march")
     if not may_turn_round(own):
         return Reference("exact")

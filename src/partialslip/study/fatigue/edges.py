@@ -96,7 +96,7 @@ def edges(scene: Scene, result: Result, adhered: Result | None = None) -> tuple[
         if adhered is not None:
             K_T: Coefficient | None = _of_adhered(adhered, side, inwards, marks)
         else:
-            K_T = None if scene.sized else _of_half_planes(scene, result, -inwards)
+            K_T = None if scene.finite else _of_half_planes(scene, result, -inwards)
         slip, K_S = None, None
         if stick is not None:
             slip = float(abs(stick[side] - end))

@@ -85,7 +85,7 @@ def _data(scene: Scene) -> dict[str, Any]:
 
     ``units`` has labels and sizes of the units in which the page shows numbers; none for SI with prefixes.
     """
-    pressed, load, f, units = contact(scene), scene.load, scene.friction.f, scene.units
+    pressed, load, f, units = contact(scene.half_planes), scene.load, scene.friction.f, scene.units
     sf = abs(load.dsigma) / (f * pressed.p0)
     return {
         "name": scene.name,

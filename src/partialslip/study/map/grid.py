@@ -141,7 +141,7 @@ def stick_map(scene: Scene | None = None, progress: Callable[[str], None] = lamb
     if scene.presses_anew:
         given = scene.load.shown("P", scene.units)
         raise InputError(f"load.P = {given}: must be one number for a map over dQ and dsigma")
-    pressed = contact(scene)
+    pressed = contact(scene.half_planes)
     point, missing = _map_point(scene, pressed)
     top = max(_TOP, math.ceil(1.2 * point.place[1])) if point else _TOP
     data = _mapped(pressed.shape, top, progress)

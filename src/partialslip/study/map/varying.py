@@ -111,13 +111,13 @@ def varying_map(scene: Scene, progress: Callable[[str], None] = lambda _: None) 
         raise InputError(f"load.Q, load.sigma, load.P: must be in phase {_PURPOSE}")
     if load.dQ == 0:
         raise InputError(f"load.Q = {load.shown('Q', scene.units)}: must vary {_PURPOSE}")
-    pressed = contact(scene)
+    pressed = contact(scene.half_planes)
     count = _COUNT_KINKED if pressed.shape.kinks else _COUNT
     shares = np.linspace(0, 1, count, endpoint=False)  # of dQ = f (P1 + P2), and of dP = P
     ratio, columns = _ratio(scene, pressed), []
     for dP in shares.tolist():
         progress(f"map {dP:.0%}")
-        less = contact(scene, Pressing((1 - dP) * scene.P, scene.M))
+        less = contact(scene.half_planes, Pressing((1 - dP) * scene.P, scene.M))
         zone = stick_zones(shares, math.pi * ratio * shares, Mean(pressed, less))
         columns.append((zone.m, zone.n, zone.s, np.full(count, less.a / pressed.a)))
     m, n, s, smaller = np.stack(columns, axis=-1)

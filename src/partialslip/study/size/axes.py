@@ -213,7 +213,7 @@ def cases(scene: Scene, axes: Sequence[Axis], accuracies: Sequence[float] = (1.0
 def _half_width(scene: Scene) -> float:
     """Contact half-width of the half-plane, in the scene's units."""
     method = half_plane_method(scene)
-    return scene.units.from_si(run(scene, method)[method].a, "m")
+    return scene.units.from_si(run(scene.half_planes, method)[method].a, "m")
 
 
 def _put(data: dict[str, Any], path: list[str], value: float, key: str) -> None:

@@ -1,10 +1,16 @@
-"""One case of a study of sizes: finite elements, half-planes, and half-planes that act like the bodies."""
+"""One case of a study of sizes: finite elements, half-planes, and half-planes that act like the bodies; of two equal
+strips their exact solution, too."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec import structs
 
 from partialslip.report.record import Record, record
 from partialslip.result import Result
-from partialslip.run import compared, run
+from partialslip.run import Run, run
+from partialslip.run.judge import compare
+from partialslip.run.judge.reference import reference
 from partialslip.scene import Scene
 from partialslip.study.batch.job import Job, Solved
 from partialslip.study.fatigue import hot_spots
@@ -13,7 +19,7 @@ from partialslip.tools.errors import InputError
 if TYPE_CHECKING:
     from partialslip_fem import Kept
 
-FEM, HALF_PLANE, EQUIVALENT = "fem", "half-plane", "equivalent"
+FEM, HALF_PLANE, EQUIVALENT, STRIPS = "fem", "half-plane", "equivalent", "strips"
 
 
 def half_plane_method(scene: Scene) -> str:
@@ -29,7 +35,7 @@ def compared_methods(scene: Scene) -> tuple[str, str, str]:
 
 class Sized(Solved, frozen=True, kw_only=True):
     """Outcome of a case: ``run`` compares the finite elements with half-planes; ``stresses`` are hot spots by
-    :data:`FEM`, :data:`HALF_PLANE` and :data:`EQUIVALENT`.
+    :data:`FEM`, :data:`HALF_PLANE`, :data:`EQUIVALENT` and :data:`STRIPS`.
 
     Parameters
     ----------
@@ -37,32 +43,49 @@ class Sized(Solved, frozen=True, kw_only=True):
         Comparison of equivalent half-planes with the finite elements, without curves; None if there are none.
     refused : str
         Why there are no equivalent half-planes, in one line; empty for a scene without finite bodies.
+    strips : Record or None
+        Comparison of the finite elements with the exact solution of two equal strips, by march where exact has none;
+        without curves; None for other bodies.
     """
 
     equivalent: Record | None = None
     refused: str = ""
+    strips: Record | None = None
 
 
 def solve_sized(job: Job, keep: "Kept | None" = None) -> Sized:
     """Solve ``job`` as half-planes (:func:`half_plane_method`) and by finite elements, and by equivalent half-planes
-    where these exist; ``keep`` as in :func:`partialslip.run`."""
-    scene, method = job.scene, half_plane_method(job.scene)
+    where these exist; two equal strips exactly. ``keep`` as in :func:`partialslip.run`."""
+    scene, stresses = job.scene, job.stresses
+    exact = {HALF_PLANE: (scene.half_planes if scene.strips else scene, half_plane_method(scene))}
+    exact |= {STRIPS: (scene, reference(scene).method)} if scene.strips else {}
     try:
-        whole = run(scene, (method, "fem"), subsurface=job.stresses, keep=keep)
-        found = {FEM: whole["fem"], HALF_PLANE: _with_stresses(scene, whole[method])} if job.stresses else {}
-        spots = {name: hot_spots(scene, result) for name, result in found.items()}
+        solved = run(scene, "fem", subsurface=stresses, keep=keep)
+        found = {name: run(of, method, subsurface=stresses)[method] for name, (of, method) in exact.items()}
+        all_ = {FEM: solved["fem"]} | {name: _with_stresses(exact[name][0], each) for name, each in found.items()}
+        spots = {name: hot_spots(scene, result) for name, result in all_.items()} if stresses else {}
     except InputError as error:
         return Sized(labels=job.labels, error=str(error))
-    plain = record(whole, curves=False)
+    plain, strips = (
+        _against(solved, each.method, each, "fem", solved["fem"]) if each else None
+        for each in (found[HALF_PLANE], found.get(STRIPS))
+    )
+    own = Sized(labels=job.labels, run=plain, stresses=spots, strips=strips)
     if not scene.finite:
-        return Sized(labels=job.labels, run=plain, stresses=spots)
+        return own
     try:
-        alike = run(scene, "equivalent", subsurface=job.stresses)
-        spots |= {EQUIVALENT: hot_spots(scene, alike["equivalent"])} if job.stresses else {}
+        alike = run(scene, "equivalent", subsurface=stresses)["equivalent"]
+        spots |= {EQUIVALENT: hot_spots(scene, alike)} if stresses else {}
     except InputError as error:
-        return Sized(labels=job.labels, run=plain, stresses=spots, refused=str(error))
-    against = compared(scene, whole.plan, {"fem": whole["fem"], **alike.results}, None)
-    return Sized(labels=job.labels, run=plain, stresses=spots, equivalent=record(against, curves=False))
+        return structs.replace(own, refused=str(error))
+    return structs.replace(own, equivalent=_against(solved, "fem", solved["fem"], "equivalent", alike))
+
+
+def _against(solved: Run, name: str, true: Result, other: str, result: Result) -> Record:
+    """The ``result`` of the method ``other`` compared with the ``true`` one of the method ``name``, both of the scene
+    that was ``solved``; without curves."""
+    comparisons = {other: compare(result, true, solved.scene, None)}
+    return record(replace(solved, results={name: true, other: result}, comparisons=comparisons), curves=False)
 
 
 def _with_stresses(scene: Scene, found: Result) -> Result:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from partialslip.study.size.case import EQUIVALENT, HALF_PLANE
-from partialslip.study.size.law import Kind, Needed, Sizes, Trend
-from partialslip.study.size.tables import NAMES, SizeStudy, percent, size_text
+from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, STRIPS
+from partialslip.study.size.law import NAMES, Kind, Needed, Sizes, Trend
+from partialslip.study.size.tables import SizeStudy, percent, size_text
 from partialslip.tools.arrays import Array
 from partialslip.tools.output.svg import svg
 
@@ -23,7 +23,9 @@ CAPTION = "How far half-planes are off, over the size; marks and numbers: from t
 _LEVELS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3)  # display: contours of the change
 _WIDTH, _HIGH = 4.2, 1.8  # display: of the figure and of a panel, inches: read at a width of 9 cm
 _FARTHEST = 10.0  # display: times the largest size: what is shown of extrapolated sizes
-_BELOW = 1e-3  # display: of the largest level: smallest difference that is shown, but for smaller levels
+# display: of the largest level: smallest difference that is shown, but for smaller levels; the same with exact strips
+_BELOW, _BELOW_STRIPS = 1e-3, 1e-5
+_DECADES = 5  # display: most decades that all have a tick
 _MARGIN = 1.3  # display: factor beyond the ends of the axis of differences
 _LINE = 56  # display: characters of a title
 _LABEL = 48  # display: characters of a label of the axis
@@ -35,8 +37,8 @@ _OF_A = ("m", "n")  # quantities whose differences are in a
 def size_svg(study: SizeStudy) -> str:
     """Return the differences of ``study`` over the size as SVG, a panel for each quantity; one size at least is solved.
 
-    Circles are the half-plane's, squares those of equivalent half-planes. Horizontal lines are the levels; where a
-    level is kept from a size on, a line falls from there to the axis, beside the number.
+    Circles are the half-plane's, squares those of equivalent half-planes, triangles those of exact strips. Horizontal
+    lines are the levels; where a level is kept from a size on, a line falls from there to the axis, beside the number.
     """
     trends = study.trends
     found = [quantity for quantity in study.quantities if any(trend.quantity == quantity for trend in trends)]
@@ -47,7 +49,8 @@ def size_svg(study: SizeStudy) -> str:
         panels = figure.subplots(len(found), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
         _put_sizes(panels[0], study)
         panels[0].set_ylim(low / _MARGIN, high * _MARGIN)
-        decades = [10.0**k for k in range(round(math.log10(low)), round(math.log10(high)) + 1)]
+        first, last = (round(math.log10(each)) for each in (low, high))
+        decades = [10.0**k for k in range(last, first - 1, -2 if last - first > _DECADES else -1)]
         panels[0].set_yticks(decades, [percent(each) for each in decades], minor=False)
         panels[0].yaxis.minorticks_off()
         for axes, quantity in zip(panels, found, strict=True):
@@ -65,7 +68,8 @@ def _decades(study: SizeStudy, levels: Sequence[float]) -> tuple[float, float]:
     """Return the powers of ten between which differences are shown."""
     off = np.concatenate([found for model in study.models for found in model.off.values()])
     off = off[off > 0]
-    low = min(max(off.min(initial=levels[0]), _BELOW * levels[-1]), levels[0])
+    least = _BELOW_STRIPS if any(model.name == STRIPS for model in study.models) else _BELOW
+    low = min(max(off.min(initial=levels[0]), least * levels[-1]), levels[0])
     high = max(off.max(initial=levels[-1]), levels[-1])
     return 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high))
 
@@ -172,9 +176,10 @@ def _put_ticks(axis: "XAxis | YAxis", values: Sequence[float], room: Callable[[s
 
 _MODELS: dict[str, dict[str, Any]] = {
     HALF_PLANE: {"marker": "o", "ls": "-", "ms": 5, "mfc": "black", "lw": 1.2},
+    STRIPS: {"marker": "^", "ls": ":", "ms": 5, "mfc": "white", "lw": 1.2},
     EQUIVALENT: {"marker": "s", "ls": "--", "ms": 5, "mfc": "white", "lw": 1.2},
 }
-_SHORT = {HALF_PLANE: "half-planes", EQUIVALENT: "equivalent"}
+_SHORT = {HALF_PLANE: "half-planes", EQUIVALENT: "equivalent", STRIPS: "strips"}
 _LEVEL: dict[str, Any] = {"color": "0.5", "lw": 0.7}
 _BEYOND: dict[str, Any] = {"color": "black", "lw": 1.0, "ls": ":"}
 _MESH: dict[str, Any] = {"color": "0.9", "lw": 0, "zorder": -1}

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import t as student
 
-from partialslip.study.size.case import HALF_PLANE
+from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, STRIPS
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
 
@@ -24,6 +24,7 @@ _FEWEST = 3  # accuracy: points of a law
 _SHARE = 0.95  # accuracy: of confidence
 # accuracy: times the largest solved size: as far as a law is trusted; and the size: the farthest end of its interval
 BEYOND = 10.0
+NAMES = {HALF_PLANE: "half-planes", EQUIVALENT: "equivalent half-planes", STRIPS: "exact strips"}
 # limit: times the largest difference of the sizes: a larger one at the size that stands for an infinite one has grown
 _GROWS = 3.0
 
@@ -59,7 +60,8 @@ class Sizes:
     Parameters
     ----------
     name : str
-        ``half-plane``, or ``equivalent`` for half-planes with the data that make them act like the bodies.
+        ``half-plane``, ``equivalent`` for half-planes with the data that make them act like the bodies, or ``strips``
+        for the exact solution of two equal strips.
     size : (k,) array
         Values along the axis.
     change : mapping of str to (k,) array
@@ -91,7 +93,7 @@ class Sizes:
     @property
     def title(self) -> str:
         """Title of a table of the differences."""
-        return f"Differences of the {self.name}" if self.name == HALF_PLANE else "Differences of equivalent half-planes"
+        return f"Differences of {'the half-plane' if self.name == HALF_PLANE else NAMES[self.name]}"
 
     @cached_property
     def trends(self) -> "list[Trend]":

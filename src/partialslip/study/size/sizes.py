@@ -22,7 +22,7 @@ from partialslip.study.batch.sweep import SweepProgress, work_through
 from partialslip.study.fatigue import HotSpot
 from partialslip.study.fatigue.spots import SIGMA, off_by
 from partialslip.study.size.axes import ACCURACY, Axis, cases
-from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, Sized, solve_sized
+from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, STRIPS, Sized, solve_sized
 from partialslip.study.size.law import CLEAR, Levels, Sizes
 from partialslip.tools.arrays import Array
 from partialslip.tools.errors import InputError
@@ -152,8 +152,8 @@ def stress_quantities(entries: Iterable[Sized]) -> tuple[str, ...]:
 
 
 def hot_spots_along(axis: Axis, entries: Iterable[Sized]) -> dict[float, Mapping[str, Mapping[str, HotSpot]]]:
-    """Return the hot spots on the finest mesh by value along ``axis``, and by :data:`FEM`, :data:`HALF_PLANE` and
-    :data:`EQUIVALENT`, from ``entries``. Errors are those of :func:`along`."""
+    """Return the hot spots on the finest mesh by value along ``axis``, and by :data:`FEM`, :data:`HALF_PLANE`,
+    :data:`EQUIVALENT` and :data:`STRIPS`, from ``entries``. Errors are those of :func:`along`."""
     return {
         point[0]: {**meshes[-1].stresses, FEM: _with_mesh_errors(meshes)}
         for point, meshes in sorted(_by_point([axis], entries).items())
@@ -183,19 +183,18 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
     refinement; NaN without either, as for a fixed element size. That of the rig, and that of half-planes that are not
     solved exactly, add to it.
     """
-    run = meshes[-1].run
-    assert run
-    found, estimate, beside = (
-        _changes_from_half_plane(meshes[-1]),
-        _estimate(run.methods["fem"]),
-        _half_plane_errors(run),
-    )
+    run = _run(meshes[-1])
+    found, estimate = _changes(run), _estimate(run.methods["fem"])
     coarser = [each for each in meshes[:-1] if _dofs(each) != _dofs(meshes[-1])]
-    rough = _changes_from_half_plane(coarser[-1]) if coarser else {}
+    rough = _changes(_run(coarser[-1])) if coarser else {}
     changed = {key: abs(rough.get(key, math.nan) - found.get(key, math.nan)) / _COARSER for key in DIFFERENCES}
     mesh = {key: float(np.fmax(estimate.get(key, math.nan), changed[key])) for key in DIFFERENCES}
-    both = {key: mesh[key] + beside.get(key, 0.0) for key in DIFFERENCES}
-    differences = {HALF_PLANE: ({key: found.get(key, math.nan) for key in DIFFERENCES}, both)}
+    differences = {}
+    for name, of in ((HALF_PLANE, run), (STRIPS, meshes[-1].strips)):
+        if of:
+            beside, changes = _half_plane_errors(of), _changes(of)
+            both = {key: mesh[key] + beside.get(key, 0.0) for key in DIFFERENCES}
+            differences[name] = {key: changes.get(key, math.nan) for key in DIFFERENCES}, both
     if meshes[-1].equivalent:
         left, rig = _left(meshes[-1])
         both = {key: mesh[key] + rig.get(key, 0.0) for key in DIFFERENCES}
@@ -204,7 +203,7 @@ def _differences(meshes: Sequence[Sized]) -> dict[str, tuple[dict[str, float], d
     for name, (off, errors) in differences.items():
         for key, spot in meshes[-1].stresses.get(name, {}).items():
             if key in true:
-                own = spot.error if name == HALF_PLANE else _rig_error(meshes[-1])
+                own = _rig_error(meshes[-1]) if name == EQUIVALENT else spot.error
                 off[key] = (spot.value - true[key].value) / abs(true[key].value)
                 errors[key] = _sum_or_nan(own, true[key].error)
     return differences
@@ -239,9 +238,13 @@ def _clear(meshes: Sequence[Sized]) -> bool:
     return all(not abs(off[key]) < CLEAR * mesh[key] for key in DIFFERENCES)
 
 
-def _dofs(entry: Sized) -> int | None:
+def _run(entry: Sized) -> Record:
     assert entry.run
-    return entry.run.methods["fem"].counts.get("dofs")
+    return entry.run
+
+
+def _dofs(entry: Sized) -> int | None:
+    return _run(entry).methods["fem"].counts.get("dofs")
 
 
 def _estimate(result: ResultRecord) -> dict[str, float]:
@@ -251,15 +254,14 @@ def _estimate(result: ResultRecord) -> dict[str, float]:
 
 
 def _half_plane_errors(run: Record) -> dict[str, float]:
-    """Return the error estimates of the half-planes of a ``run`` by quantity; NaN where they have none."""
+    """Return the error estimates of the half-planes (or strips) of a ``run`` by quantity; NaN where they have none."""
     name, result = next((name, found) for name, found in run.methods.items() if name != "fem")
     return {key: error_of(result, key, name) for key in DIFFERENCES}
 
 
-def _changes_from_half_plane(entry: Sized) -> dict[str, float]:
-    """Return the change from the half-plane at one point on one mesh, by quantity."""
-    assert entry.run
-    fem, plain, errors = entry.run.methods["fem"], _half_plane(entry.run), entry.run.comparison["fem"].errors
+def _changes(run: Record) -> dict[str, float]:
+    """Return the change from the half-planes (or strips) of a ``run`` to its finite elements, by quantity."""
+    fem, plain, errors = run.methods["fem"], _half_plane(run), run.comparison["fem"].errors
     a = plain.a or math.nan
     found = {"a": (fem.a or math.nan) / a - 1, "p_max": (fem.p_max or math.nan) / (plain.p_max or math.nan) - 1}
     for key, end, true in (("m", fem.m, plain.m), ("n", fem.n, plain.n)):
@@ -314,7 +316,7 @@ def case_table(axes: Sequence[Axis], entries: Iterable[Sized], units: Units) -> 
         *starmap(units.heading, figures.items()),
         "regime",
     ]
-    head += [f"{name}: {key}" for name in (HALF_PLANE, EQUIVALENT) for key in DIFFERENCES]
+    head += [f"{name}: {key}" for name in (HALF_PLANE, EQUIVALENT, STRIPS) for key in DIFFERENCES]
     head += ["dofs", "cpu_s", "error", "no equivalent"]
     rows: list[list[Any]] = []
     for entry in entries:
@@ -322,7 +324,8 @@ def case_table(axes: Sequence[Axis], entries: Iterable[Sized], units: Units) -> 
         if entry.run is None:
             rows.append([*row, *[""] * (len(head) - len(row) - 2), entry.error, ""])
         else:
-            fem, differences = entry.run.methods["fem"], (_changes_from_half_plane(entry), _left(entry)[0])
+            strips = _changes(entry.strips) if entry.strips else {}
+            fem, differences = entry.run.methods["fem"], (_changes(entry.run), _left(entry)[0], strips)
             values = [(getattr(fem, key), of) for key, of in figures.items()]
             row += ["" if value is None else units.from_si(value, of) for value, of in values]
             row.append(fem.regime)

@@ -11,7 +11,7 @@ from partialslip.study.fatigue import HotSpot
 from partialslip.study.fatigue.criteria import CRITERIA, RUIZ, chosen
 from partialslip.study.fatigue.places import OVER
 from partialslip.study.fatigue.spots import SIGMA
-from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE
+from partialslip.study.size.case import EQUIVALENT, FEM, HALF_PLANE, STRIPS
 from partialslip.study.size.law import Sizes
 from partialslip.study.size.sizes import DIFFERENCES
 from partialslip.study.size.tables import Rows, SizeStudy, marked, mesh_share, row_text
@@ -21,7 +21,7 @@ from partialslip.tools.output.files import csv_text
 USUAL = ("m", "n", SIGMA)  # display: quantities of which the answer tells
 _SURFACE = "surface"
 _CRITERION = "swt"  # display: the criterion of scenes that have no constants of a criterion
-_MODELS = (FEM, HALF_PLANE, EQUIVALENT)
+_MODELS = (FEM, HALF_PLANE, EQUIVALENT, STRIPS)
 _UNLIKE = "stresses of the half-plane are not known: no method finds them in half-planes of unlike materials"
 NOT_ASKED = "no stresses: the table fatigue has no constant; --set effects.subsurface=true tells the largest sigma_xx"
 

@@ -8,13 +8,12 @@ from types import MappingProxyType
 from partialslip.scene import Scene
 from partialslip.study.fatigue import HotSpot
 from partialslip.study.size.axes import Axis
-from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, Sized
-from partialslip.study.size.law import Kind, Levels, Needed, PointStatus, Sizes, Trend
+from partialslip.study.size.case import EQUIVALENT, HALF_PLANE, STRIPS, Sized
+from partialslip.study.size.law import NAMES, Kind, Levels, Needed, PointStatus, Sizes, Trend
 from partialslip.study.size.sizes import along, hot_spots_along, refused
 from partialslip.tools.output.files import csv_text
 
 Rows = list[tuple[str, ...]]
-NAMES = {HALF_PLANE: "half-planes", EQUIVALENT: "equivalent half-planes"}
 INFINITE = "infinite"  # size that stands for an infinite one
 _BY = "half-planes"  # heading of the names of models
 _FITTED = "*"
@@ -37,7 +36,7 @@ class SizeStudy:
     scene : Scene
     axis : Axis
     models : tuple of Sizes
-        The half-plane, then equivalent half-planes if a case has them.
+        The half-plane, then equivalent half-planes and exact strips if a case has them.
     remarks : tuple of str
         Cases that failed or have no equivalent half-planes, and why.
     spots : mapping of float to mapping of str to mapping of str to HotSpot
@@ -78,7 +77,7 @@ class SizeStudy:
 def size_study(scene: Scene, axis: Axis, entries: Sequence[Sized], levels: Levels = MappingProxyType({})) -> SizeStudy:
     """Evaluate the ``entries`` of a ledger for a sweep of ``scene`` along ``axis``, for ``levels`` of the differences
     (:func:`partialslip.study.size.law.levels`)."""
-    sweeps = [along(axis, entries, name, levels) for name in (HALF_PLANE, EQUIVALENT)]
+    sweeps = [along(axis, entries, name, levels) for name in (HALF_PLANE, EQUIVALENT, STRIPS)]
     models = tuple(each for each in sweeps if each.name == HALF_PLANE or each.size.size)
     halves = [
         f"{name} stands on rollers, half of a specimen: --over {name}.thickness=... gives twice the height"
@@ -162,7 +161,7 @@ def differences_table(study: SizeStudy, model: Sizes) -> tuple[tuple[str, ...], 
         size: (*(marked(model.off[key][k], points[key][k]) for key in points), mesh_share(model, points, k))
         for k, size in enumerate(model.size.tolist())
     }
-    without = study.models[0].size.tolist() if model.name == EQUIVALENT else ()
+    without = study.models[0].size.tolist() if model.name != HALF_PLANE else ()
     failed = {size: (*["-"] * len(points), "") for size in (*model.failed, *without)}
     rows = [(row_text(model, size), *cells) for size, cells in sorted((failed | solved).items())] if points else []
     return ("size", *points, "mesh"), rows
