@@ -175,7 +175,7 @@ SPOILED = {
     "unknown field of an answer": (changed_answer(colour="red"), r"PS-02.json: colour: unknown key"),
     "no JSON": (written("PS-02.json", "{"), r"PS-02.json: not JSON"),
     "negative cost": (changed_answer(cpu_s=-1), r"PS-02.json: cpu_s: must be >= 0"),
-    "short ladder": (changed_answer(values={}, note="none", ladder=[RUNG]), r"ladder: must have 3 meshes or more"),
+    "short ladder": (changed_answer(values={}, note="none", ladder=[RUNG]), r"ladder: must have 2 meshes or more"),
     "ladder that grows": (changed_answer(values={}, note="none", ladder=[RUNG | {"h": h} for h in (4, 5, 3)]),
                           r"ladder.1..h = 5.0: must be less than 4.0"),
     "mesh of no size": (changed_answer(values={}, note="none", ladder=[RUNG | {"h": -1}] * 3), r"must be > 0"),

@@ -21,6 +21,8 @@ from partialslip.verify.benchmark.scoreboard import badge as badge
 from partialslip.verify.benchmark.scoreboard import badge_names as badge_names
 from partialslip.verify.benchmark.scoreboard import scoreboard as scoreboard
 from partialslip.verify.benchmark.scoreboard import standing as standing
+from partialslip.verify.benchmark.statements import Statement as Statement
+from partialslip.verify.benchmark.statements import read_statements as read_statements
 from partialslip.verify.benchmark.submission import Answer as Answer
 from partialslip.verify.benchmark.submission import Meta as Meta
 from partialslip.verify.benchmark.submission import Rung as Rung
@@ -39,6 +41,7 @@ __all__ = [
     "Rung",
     "Source",
     "Standing",
+    "Statement",
     "Submission",
     "Target",
     "badge",
@@ -50,6 +53,7 @@ __all__ = [
     "graded",
     "handed_in",
     "read_problems",
+    "read_statements",
     "read_submission",
     "scoreboard",
     "standing",

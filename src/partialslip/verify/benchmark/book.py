@@ -193,6 +193,8 @@ def book_zip(problems: Mapping[str, Problem]) -> bytes:
         ).encode()
     }
     content["grade.yml"] = (package / "grade.yml").read_bytes()
+    package_statements = (package / "statements").iterdir()
+    content |= {f"statements/{each.name}": each.read_bytes() for each in sorted(package_statements, key=str)}
     checksums = read_frozen().checksums
     for number, problem in problems.items():
         own = {name: text.encode() for name, text in _files(problem, checksums[number]).items()} | model_files(problem)
@@ -203,8 +205,8 @@ def book_zip(problems: Mapping[str, Problem]) -> bytes:
 def _files(problem: Problem, checksum: str) -> dict[str, str]:
     a = problem.targets["a"].value
     listed = [
-        (key, {"x": float(place) * a} if (place := key.partition("@")[2]) else {}, target)
-        for key, target in problem.targets.items()
+        (key, {"x": float(place) * a} if (place := key.partition("@")[2]) else {}, problem.measured[key])
+        for key in problem.targets
     ]
     everything = {
         "number": problem.number,
@@ -273,5 +275,6 @@ def _data(problem: Problem) -> list[tuple[str, str, str]]:
 def _targets(problem: Problem) -> list[tuple[str, ...]]:
     return [
         (key, each.group, f"{each.value:.12g} {each.unit}", f"{each.scale:.6g}", f"{each.uncertainty:.0e}", each.known)
-        for key, each in problem.targets.items()
+        for key, each in problem.measured.items()
+        if key in problem.targets
     ]

@@ -8,7 +8,7 @@ from partialslip.tools.errors import InputError
 from partialslip.tools.inputfile import checksum
 from partialslip.tools.output.files import files_in
 from partialslip.verify.benchmark.folder import examined
-from partialslip.verify.benchmark.problem import Problem, Target
+from partialslip.verify.benchmark.problem import Posed, Target
 from partialslip.verify.benchmark.submission import META, Answer, Meta, Submission, seen
 from partialslip.verify.benchmark.tables import TableValues, differences
 
@@ -21,7 +21,7 @@ _TENSION = 0.01  # limit: largest tension at the ends of the contact, in p0: wha
 _WILD = 10.0  # limit: largest error, in the scale of a target: no code is so far off, but values in mm and MPa are
 
 
-def handed_in(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> tuple[Submission | None, list[str]]:
+def handed_in(folder: str | os.PathLike[str], known: Mapping[str, Posed]) -> tuple[Submission | None, list[str]]:
     """Check a folder of answers before it is handed in.
 
     The folder must be one that :func:`read_submission` reads. All of ``meta.toml`` must be filled in. Each file of the
@@ -119,8 +119,8 @@ def _value_faults(given: Mapping[str, float], targets: Mapping[str, Target]) -> 
             yield f"{high} = {given[high]:.9g}: must be >= {least}, the left end"
 
 
-def _answer_faults(folder: Path, problem: Problem, answer: Answer, table: TableValues | None) -> Iterator[str]:
-    file, targets = folder / f"{problem.number}.json", problem.targets
+def _answer_faults(folder: Path, problem: Posed, answer: Answer, table: TableValues | None) -> Iterator[str]:
+    file, targets = folder / f"{problem.number}.json", problem.measured
     given = {key: value for key, value in answer.values.items() if value is not None and key in targets}
     if not given and not table and not seen(answer.note):
         yield f"{file}: values: must have a value, or note must say why there is none"
