@@ -162,8 +162,10 @@ def _score(options: argparse.Namespace) -> int:
     from partialslip.verify.benchmark import read_problems, read_statements, read_submission
     from partialslip.verify.benchmark.problem import chosen_problems
 
-    some = chosen_problems(options.problems) | (read_statements() if options.problems is None else {})
-    return _graded(read_submission(options.folder, read_problems() | read_statements()), some)
+    some: dict[str, Posed] = {**chosen_problems(options.problems)}
+    if options.problems is None:
+        some |= read_statements()
+    return _graded(read_submission(options.folder, {**read_problems(), **read_statements()}), some)
 
 
 def _check_submission(options: argparse.Namespace) -> int:
@@ -171,7 +173,7 @@ def _check_submission(options: argparse.Namespace) -> int:
     from partialslip.tools.errors import one_line
     from partialslip.verify.benchmark import handed_in, read_problems, read_statements
 
-    known = read_problems() | read_statements()
+    known = {**read_problems(), **read_statements()}
     submission, wrong = handed_in(options.folder, known)
     for line in wrong:
         output().print(one_line(line), markup=False, soft_wrap=True)

@@ -60,16 +60,14 @@ def curve_of(result: Result, steps: Array) -> Curve:
     breaks = breaks[(breaks >= ends.min()) & (breaks <= ends.max())]
     breaks = breaks[np.diff(breaks, prepend=-np.inf) > 1e-9 * result.a]
     segments: list[list[tuple[float, ...]]] = [[], []]
+    t = chebyshev.chebpts1(_DEGREE + 1)
+    series = chebyshev.chebvander(t, _DEGREE) * np.append(1.0, np.full(_DEGREE, 2.0)) / len(t)
     for left, right in itertools.pairwise(breaks.tolist()):
-
-        def values(t: Array, row: int, left: float = left, right: float = right) -> Array:
-            x = (right + left - (right - left) * np.cos(np.pi / 2 * (t + 1))) / 2
-            return of.at(x)[row]
-
-        for row, series in enumerate(segments):
-            found = chebyshev.chebinterpolate(values, _DEGREE, (row,))
+        x = (right + left - (right - left) * np.cos(np.pi / 2 * (t + 1))) / 2
+        for row, values in zip(segments, of.at(x)[:2], strict=True):
+            found = values @ series
             kept = np.flatnonzero(np.abs(found) > _CUT * max(np.abs(found).max(), result.p0 * 1e-3))
-            series.append(tuple(float(f"{each:.11g}") for each in found[: kept[-1] + 1 if len(kept) else 1]))
+            row.append(tuple(float(f"{each:.11g}") for each in found[: kept[-1] + 1 if len(kept) else 1]))
     return Curve(tuple(breaks.tolist()), tuple(segments[0]), tuple(segments[1]))
 
 

@@ -57,16 +57,15 @@ def climbs(problem: Posed, answer: Answer) -> list[Climb]:
 def _climb(problem: Posed, answer: Answer, key: str) -> Climb:
     target, last = problem.measured[key], answer.ladder[-3:]
     values = [rung.values.get(key) for rung in last]
-    if len(values) < 3:
-        off = None if values[-1] is None else abs(values[-1] - target.value) / target.scale
-        return Climb(key, values[-1], off, why=FEW)
-    coarse, middle, fine = values
-    if coarse is None or middle is None or fine is None:
-        return Climb(key, fine, None, why=MISSING)
 
     def off(value: float) -> float:
         return abs(value - target.value) / target.scale
 
+    if len(values) < 3:
+        return Climb(key, values[-1], None if values[-1] is None else off(values[-1]), why=FEW)
+    coarse, middle, fine = values
+    if coarse is None or middle is None or fine is None:
+        return Climb(key, fine, None, why=MISSING)
     ratios = [before.h / after.h for before, after in itertools.pairwise(last)]
     if not (1 < ratios[1] < math.inf and abs(ratios[0] / ratios[1] - 1) <= _CONSTANT):
         return Climb(key, fine, off(fine), why=NO_RATIO)
