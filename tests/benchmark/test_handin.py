@@ -229,14 +229,14 @@ def coarse(folder):
     return folder
 
 
-TRUE = {key: PROBLEM.targets[key].value for key in PROBLEM.targets}
+TRUE = {key: target.value for key, target in PROBLEM.measured.items()}
 
 
 def test_a_table_checks_values_and_does_not_replace_them(folder, capsys):
     """The values of the targets are those of the exact table to the error of reading it, and keep their grade."""
     changed_answer(**TRUE)(folder)
     beside = checked(capsys, 0).out
-    assert re.search(r"PS-02.csv alone: grade [AB] .*; 14 values are compared with it, to \S+ at worst", beside)
+    assert re.search(r"PS-02.csv alone: grade [AB] .*; 16 values are compared with it, to \S+ at worst", beside)
     assert read_submission(folder, KNOWN).answers["PS-02"].values == TRUE
     (folder / "PS-02.csv").unlink()
     assert checked(capsys, 0).out.splitlines() == [line for line in beside.splitlines() if "PS-02.csv" not in line]
@@ -259,7 +259,7 @@ def test_targets_beside_the_table_of_a_coarse_mesh_are_named(coarse, capsys):
     assert (coarse / "PS-02.csv").is_file()
     lines = checked(capsys, 2).out.splitlines()
     assert all(
-        re.search(r"values\.\S+ = \S+: must be \S+ within \S+ (m|Pa), as PS-02.csv has it", line) for line in lines
+        re.search(r"values\.\S+ = \S+: must be \S+ within \S+ (m|Pa|1), as PS-02.csv has it", line) for line in lines
     )
     assert main(["benchmark", "score", "mine"]) == 0
     # lines over elements of 0.1 a, at 501 points, do not tell m
