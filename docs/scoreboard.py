@@ -268,7 +268,8 @@ def _rung(submission: Submission, number: str, size: float) -> Answer | None:
     answer = submission.answers.get(number)
     for rung in answer.ladder if answer else ():
         if rung.h == size:
-            return Answer(rung.values, rung.cpu_s, rung.unknowns, estimate=rung.estimate)
+            last = answer is not None and rung is answer.ladder[-1]
+            return Answer(rung.values, estimate=answer.estimate if answer and last else rung.estimate)
     return None
 
 

@@ -173,7 +173,7 @@ def _check_submission(options: argparse.Namespace) -> int:
     from partialslip.tools.errors import one_line
     from partialslip.verify.benchmark import handed_in, read_problems, read_statements
 
-    known = {**read_problems(), **read_statements()}
+    known: dict[str, Posed] = {**read_problems(), **read_statements()}
     submission, wrong = handed_in(options.folder, known)
     for line in wrong:
         output().print(one_line(line), markup=False, soft_wrap=True)

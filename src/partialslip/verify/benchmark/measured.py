@@ -137,7 +137,10 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
         if most > 0:
             yield "slip", Quantity(most, "m", most, "slip", own["q"])
             work, off = result.slip.dissipated, result.slip.dissipated_error
-            yield "dissipated", Quantity(work, "J/m", work, "slip", math.nan if off is None else off / work)
+            yield (
+                "dissipated",
+                Quantity(work, "J/m", work, "slip", off / work if off is not None and work else math.nan),
+            )
     if result.surface:
         off = peak_error(result)
         error = math.nan if off is None else off / p0
