@@ -96,7 +96,8 @@ def norms(problem: Problem, result: Result) -> dict[str, Quantity]:
 def answer_of(problem: Problem, result: Result) -> Answer:
     """Answer to ``problem`` from a ``result``, with what it has of the targets."""
     found = targeted(problem, result)
-    own = {key: each.error for key, each in found.items() if each.group in HEADLINE and math.isfinite(each.error)}
+    headline = {key for key, target in problem.measured.items() if target.group in HEADLINE}
+    own = {key: each.error for key, each in found.items() if key in headline and math.isfinite(each.error)}
     return Answer(
         values={key: each.value for key, each in found.items()},
         estimate={key: float(f"{error:.2g}") for key, error in own.items()},
