@@ -79,12 +79,13 @@ def test_linear_elements_answer_on_a_ladder(tmp_path):
 
 
 def test_a_badge_tells_the_worst_grades():
-    good = {key: target.value for key, target in PROBLEM.targets.items()}
+    good = {key: target.value for key, target in PROBLEM.measured.items()}
     off = good | {"m": good["m"] + 2e-3 * PROBLEM.targets["m"].scale}
     submission = Submission(Meta("My code, v2", "1"), {"PS-02": Answer(off)})
     assert benchmark.badge_names([submission]) == ["badge-my-code-v2.svg"]
     shown = texts(benchmark.badge(submission, {"PS-02": PROBLEM}))[1:]
-    assert shown == ["My code, v2: 1 of 1", "contact A", "stick C", "tractions A", "levels A", "slip A", "stress A"]
+    groups = ["contact A", "stick C", "tractions A", "points A", "levels A", "slip A", "stress A"]
+    assert shown == ["My code, v2: 1 of 1", *groups]
     strange = msgspec.structs.replace(submission, meta=Meta("<&>", "1"))
     assert benchmark.badge_names([strange]) == ["badge-code.svg"]
     assert not re.search(r"<&>", benchmark.badge(strange))

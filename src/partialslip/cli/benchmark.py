@@ -22,7 +22,8 @@ from partialslip.tools.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from partialslip.verify.benchmark import Problem, Submission
+    from partialslip.verify.benchmark import Submission
+    from partialslip.verify.benchmark.problem import Posed
 
 _LACKING = "an answer without a headline target"
 _PROBLEMS = "numbers of problems, or patterns such as PS-0*, separated by commas (default: all)"
@@ -57,8 +58,7 @@ def add(commands: Commands) -> None:
                             examples=["partialslip benchmark run --code exact",
                                       "partialslip benchmark run --code fem-1e-4 --problems PS-0*"])  # fmt: skip
     runs.add_argument("--code", required=True, metavar="CODE", help="exact, march, fem-1e-3, fem-1e-4, fem-1e-5, "
-                      "fem-P1, fem-P2, equivalent, calculix-mortar, calculix-penalty, getfem, getfem-graded, "
-                      "kratos or opensees")  # fmt: skip
+                      "fem-P1, fem-P2, equivalent, or another code's adapter (docs/howto/benchmark.md)")  # fmt: skip
     runs.add_argument("--problems", metavar="NUMBERS", help=_PROBLEMS)
     add_out(runs, "results/benchmark-CODE[-HASH]")
     runs.set_defaults(command=_run, overrides=[])
@@ -134,9 +134,10 @@ def add(commands: Commands) -> None:
 def _list(_: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
     from partialslip.tools.output.tables import print_table
-    from partialslip.verify.benchmark import read_problems
+    from partialslip.verify.benchmark import read_problems, read_statements
 
     table = [(each.number, each.title, each.regime, str(len(each.targets))) for each in read_problems().values()]
+    table += [(each.number, each.title, "statement", str(len(each.targets))) for each in read_statements().values()]
     print_table(output(), ("", "problem", "regime", "targets"), table, words=(0, 1, 2))
     return 0
 
@@ -165,7 +166,7 @@ def _read(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
     from partialslip.verify.benchmark.problem import numbered
     from partialslip.verify.benchmark.submission import Answer, add_answer
-    from partialslip.verify.benchmark.tables import read_table
+    from partialslip.verify.benchmark.tables import completed, read_table
 
     problem, named = numbered(options.problem), options.code is not None
     code = options.code if named else Path(options.files[0]).stem
@@ -175,24 +176,27 @@ def _read(options: argparse.Namespace) -> int:
     for note in table.notes:
         output().print(note, soft_wrap=True, markup=False)
     print_written(
-        add_answer(problem.number, Answer(dict(table.values)), options.out, code, named, options.force), output()
+        add_answer(problem.number, completed(Answer({}), table), options.out, code, named, options.force), output()
     )
     return 0
 
 
 def _score(options: argparse.Namespace) -> int:
-    from partialslip.verify.benchmark import read_problems, read_submission
+    from partialslip.verify.benchmark import read_problems, read_statements, read_submission
     from partialslip.verify.benchmark.problem import chosen_problems
 
-    return _graded(read_submission(options.folder, read_problems()), chosen_problems(options.problems))
+    some: dict[str, Posed] = {**chosen_problems(options.problems)}
+    if options.problems is None:
+        some |= read_statements()
+    return _graded(read_submission(options.folder, {**read_problems(), **read_statements()}), some)
 
 
 def _check_submission(options: argparse.Namespace) -> int:
     from partialslip.cli.consoles import output
     from partialslip.tools.errors import one_line
-    from partialslip.verify.benchmark import handed_in, read_problems
+    from partialslip.verify.benchmark import handed_in, read_problems, read_statements
 
-    known = read_problems()
+    known: dict[str, Posed] = {**read_problems(), **read_statements()}
     submission, wrong = handed_in(options.folder, known)
     for line in wrong:
         output().print(one_line(line), markup=False, soft_wrap=True)
@@ -204,7 +208,7 @@ def _check_submission(options: argparse.Namespace) -> int:
     return code
 
 
-def _graded(submission: "Submission", some: "Mapping[str, Problem]") -> int:
+def _graded(submission: "Submission", some: "Mapping[str, Posed]") -> int:
     """Print grades, ladders and remarks on tables of a submission. Returns the exit code of :func:`_print_grades`."""
     from partialslip.cli.consoles import output
     from partialslip.tools.output.tables import print_table
@@ -228,7 +232,7 @@ def _graded(submission: "Submission", some: "Mapping[str, Problem]") -> int:
     return code
 
 
-def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> int:
+def _print_grades(submission: "Submission", some: "Mapping[str, Posed]") -> int:
     """Print the grades of a submission, with the target that decides. Returns the exit code: 4 if an answer lacks a
     headline target."""
     from partialslip.cli.consoles import output
@@ -243,15 +247,16 @@ def _print_grades(submission: "Submission", some: "Mapping[str, Problem]") -> in
     for number, found in grades(some, submission).items():
         worst, answer = found.overall, submission.answers[number]
         error = "" if worst.error is None else f"{worst.error:.2e}"
+        own = "" if worst.estimate is None else f"{worst.estimate:.0e}"
         groups = [found.groups[group].grade if group in found.groups else "" for group in GROUPS]
         spent = "" if answer.cpu_s is None else f"{answer.cpu_s:.2g}"
         if not found.counts:
             lacking.append(f"{number} ({', '.join(found.lacks) if found.answered else 'no values'})")
         graded = [short.get(grade, grade) for grade in (worst.grade, *groups)]
-        table.append((number, *([some[number].title] if titled else []), *graded, worst.worst, error, spent))
+        table.append((number, *([some[number].title] if titled else []), *graded, worst.worst, error, own, spent))
     console.print(f"{submission.meta.code} {submission.meta.version}", markup=False)
-    heads = ("", *(["problem"] if titled else []), "grade", *GROUPS, "worst", "error", "CPU s")
-    print_table(console, heads, table, words=range(len(heads) - 2))
+    heads = ("", *(["problem"] if titled else []), "grade", *GROUPS, "worst", "error", "+-", "CPU s")
+    print_table(console, heads, table, words=range(len(heads) - 3))
     used = [f"{mark}: {grade}" for grade, mark in short.items() if any(mark in row for row in table)]
     if used:
         console.print("; ".join(used), markup=False)

@@ -121,8 +121,9 @@ def allowed_lines(run: Run) -> list[str]:
             )
             inside = "within" if low <= off <= high else "beyond"
             first = next(iter(interval.shares))
+            allowed = f"{inside} what the inputs allow, {low:+.1%} to {high:+.1%}"
             lines.append(
-                f"{name}: {key} off by {100 * off:+.2g}% of a, {inside} what the inputs allow, {low:+.1%} to {high:+.1%} "
+                f"{name}: {key} off by {100 * off:+.2g}% of a, {allowed} "
                 f"({first} {found.inputs[first]}: {interval.shares[first]:.0%} of it)"
             )
     return lines

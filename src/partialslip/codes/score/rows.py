@@ -11,6 +11,7 @@ from partialslip.tools.errors import InputError
 
 _EQUAL = 1e-7  # accuracy: of the points' extent: largest distance of rows at equal x
 _NOTHING = 1e-9  # accuracy: of the norm: differences due to rounding
+_NOISE = 1e-6  # accuracy: of the largest column's norm: shear of a contact without friction is noise
 _FEW = 12  # display: most values of a column that tells rows apart
 _PASS = 12  # limit: fewest rows of a pass over the contact
 _IN_TURN = 0.5  # limit: of the norm: largest difference of every other row from those beside it
@@ -61,7 +62,8 @@ def check_equal_x(values: Mapping[str, Array], labels: Iterable[Label], origin: 
     rows = np.stack(columns)[:, order]
     most, least = (extreme.reduceat(rows, first, axis=1) for extreme in (np.maximum, np.minimum))
     norms = np.linalg.norm(np.maximum(np.abs(most), np.abs(least)), axis=1)
-    off = np.linalg.norm(most - least, axis=1) / np.where(norms > 0, norms, 1.0)
+    floor = _NOISE * norms.max()
+    off = np.linalg.norm(most - least, axis=1) / (np.maximum(norms, floor) if floor else 1.0)
     worst = int(off.argmax())
     name = [*values][1 + worst]
     if off[worst] <= _NOTHING:
@@ -99,10 +101,14 @@ def check_passes(values: Mapping[str, Array], labels: Iterable[Label], origin: s
     way = np.sign(np.diff(x[pressed]))
     runs = np.split(pressed, np.flatnonzero(np.diff(way)) + 1)
     runs = [run for run in runs if len(run) >= _PASS and np.ptp(x[run]) > np.ptp(x[pressed]) / 2]
+    floor = _NOISE * max(float(np.linalg.norm(column)) for column in columns)
     order = pressed[np.argsort(x[pressed], kind="stable")]
     for passes, limit in ((runs, LARGEST), ([order[::2], order[1::2]], _IN_TURN)):
         for one in passes[1:]:
-            off = {name: _off(x, column, passes[0], one) for name, column in zip([*values][1:], columns, strict=True)}
+            off = {
+                name: _off(x, column, passes[0], one, floor)
+                for name, column in zip([*values][1:], columns, strict=True)
+            }
             name = max(off, key=lambda each: off[each])
             if off[name] > limit:
                 told = f"rows are of {len(passes)} passes over the contact, which differ by {off[name]:.0%} in {name}"
@@ -112,13 +118,14 @@ def check_passes(values: Mapping[str, Array], labels: Iterable[Label], origin: s
                 )
 
 
-def _off(x: Array, column: Array, one: Indices, other: Indices) -> float:
-    """Difference of a ``column`` between the rows ``one`` and ``other``, of the norm of the larger one."""
+def _off(x: Array, column: Array, one: Indices, other: Indices, floor: float) -> float:
+    """Difference of a ``column`` between the rows ``one`` and ``other``, of the norm of the larger one or the
+    ``floor``."""
     one = one[np.argsort(x[one])]
     other = other[(x[other] >= x[one[0]]) & (x[other] <= x[one[-1]])]
     beside = np.interp(x[other], x[one], column[one])
     norm = float(np.linalg.norm(np.maximum(np.abs(beside), np.abs(column[other]))))
-    return float(np.linalg.norm(beside - column[other])) / (norm or 1.0)
+    return float(np.linalg.norm(beside - column[other])) / (max(norm, floor) or 1.0)
 
 
 def _kept(labels: Iterable[Label], passes: Sequence[Indices], column: Array, advice: str) -> str:

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from partialslip.verify.benchmark.scoreboard import badge_names as badge_names
     from partialslip.verify.benchmark.scoreboard import scoreboard as scoreboard
     from partialslip.verify.benchmark.scoreboard import standing as standing
+    from partialslip.verify.benchmark.statements import Statement as Statement
+    from partialslip.verify.benchmark.statements import read_statements as read_statements
     from partialslip.verify.benchmark.submission import Answer as Answer
     from partialslip.verify.benchmark.submission import Meta as Meta
     from partialslip.verify.benchmark.submission import Rung as Rung
@@ -41,6 +43,7 @@ _HOMES = homes_of(
         "ladder": "CLIMB_HEADS Climb climb_rows climbs",
         "problem": "Problem Source Target read_problems",
         "scoreboard": "Board Standing badge badge_names scoreboard standing",
+        "statements": "Statement read_statements",
         "submission": "Answer Meta Rung Submission write_submission",
     }
 )

@@ -192,6 +192,8 @@ def book_zip(problems: Mapping[str, Problem]) -> bytes:
         ).encode()
     }
     content["grade.yml"] = (package / "grade.yml").read_bytes()
+    package_statements = (package / "statements").iterdir()
+    content |= {f"statements/{each.name}": each.read_bytes() for each in sorted(package_statements, key=str)}
     for number, problem in problems.items():
         texts = {
             "problem.json": json_text(problem_data(problem)),
@@ -244,5 +246,6 @@ def _data(problem: Problem) -> list[tuple[str, str, str]]:
 def _targets(problem: Problem) -> list[tuple[str, ...]]:
     return [
         (key, each.group, f"{each.value:.12g} {each.unit}", f"{each.scale:.6g}", f"{each.uncertainty:.0e}", each.known)
-        for key, each in problem.targets.items()
+        for key, each in problem.measured.items()
+        if key in problem.targets
     ]

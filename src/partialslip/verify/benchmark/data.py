@@ -71,8 +71,10 @@ def problem_data(problem: Problem) -> ProblemData:
     """All of ``problem`` as plain data."""
     a = problem.targets["a"].value
     targets = {
-        key: PlacedTarget(x=float(place) * a if place else msgspec.UNSET, **msgspec.structs.asdict(target))
-        for key, target in problem.targets.items()
+        key: PlacedTarget(
+            x=float(place) * a if place else msgspec.UNSET, **msgspec.structs.asdict(problem.measured[key])
+        )
+        for key in problem.targets
         for place in [key.partition("@")[2]]
     }
     told = problem.title, problem.statement, problem.sources, problem.why

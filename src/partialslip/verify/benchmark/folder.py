@@ -10,11 +10,11 @@ from partialslip.tools.errors import InputError
 from partialslip.tools.inputfile import read_bytes
 from partialslip.tools.output.files import files_in
 from partialslip.tools.strictjson import decoded
-from partialslip.verify.benchmark.problem import Problem, Target
+from partialslip.verify.benchmark.problem import Posed, Problem, Target
 from partialslip.verify.benchmark.submission import LARGEST_FILE, META, Answer, Meta, Submission, read_meta
 from partialslip.verify.benchmark.tables import TableValues, completed, read_table, remark
 
-_FEWEST = 3  # limit: meshes of a ladder
+_FEWEST = 2  # limit: meshes of a ladder
 
 
 class Folder(NamedTuple):
@@ -32,7 +32,7 @@ class Folder(NamedTuple):
             raise InputError(self.wrong[0])
         return Submission(self.meta, self.answers)
 
-    def submission(self, known: Mapping[str, Problem]) -> Submission:
+    def submission(self, known: Mapping[str, Posed]) -> Submission:
         """The answers, completed from the tables. Raises InputError if anything is wrong."""
         written = self.as_written()
         found, remarks = dict(written.answers), []
@@ -42,7 +42,7 @@ class Folder(NamedTuple):
         return Submission(written.meta, found, tuple(remarks))
 
 
-def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]) -> Submission:
+def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Posed]) -> Submission:
     """Read a submission: ``meta.toml``, and a file PS-01.json and so on for each problem that is answered. Values that
     an answer leaves out are read from the table of tractions PS-01.csv, if there is one.
 
@@ -60,7 +60,7 @@ def read_submission(folder: str | os.PathLike[str], known: Mapping[str, Problem]
     return examined(folder, known).submission(known)
 
 
-def examined(folder: str | os.PathLike[str], known: Mapping[str, Problem], *, with_tables: bool = True) -> Folder:
+def examined(folder: str | os.PathLike[str], known: Mapping[str, Posed], *, with_tables: bool = True) -> Folder:
     """Read a submission as far as it can be read, with or without its tables. Other parameters as for
     :func:`read_submission`."""
     path = Path(folder)
@@ -83,11 +83,12 @@ def examined(folder: str | os.PathLike[str], known: Mapping[str, Problem], *, wi
             wrong.append(str(error))
             continue
         answers[number] = answer
-        wrong += [f"{file}: {line}" for line in (*_ladder_faults(answer), *_unknown(answer, known[number].targets))]
+        wrong += [f"{file}: {line}" for line in (*_ladder_faults(answer), *_unknown(answer, known[number].measured))]
         table = file.with_suffix(".csv")
-        if with_tables and os.path.lexists(table):
+        posed = known[number]
+        if with_tables and isinstance(posed, Problem) and os.path.lexists(table):
             try:
-                tables[number] = read_table(known[number], table)
+                tables[number] = read_table(posed, table)
             except InputError as error:
                 wrong.append(str(error))
     if not files:
@@ -110,7 +111,7 @@ def _unknown(answer: Answer, targets: Mapping[str, Target]) -> Iterator[str]:
 
 
 def _ladder_faults(answer: Answer) -> Iterator[str]:
-    """Lines if the ladder has one or two meshes, does not go from coarse to fine, or ends elsewhere than the answer."""
+    """Lines if the ladder has one mesh, does not go from coarse to fine, or ends elsewhere than the answer."""
     sizes = [rung.h for rung in answer.ladder]
     if not sizes:
         return

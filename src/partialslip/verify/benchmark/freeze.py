@@ -14,6 +14,7 @@ from partialslip.run.judge.measures import means
 from partialslip.run.judge.reference import reference
 from partialslip.scene import Hertz
 from partialslip.tools.arrays import Array
+from partialslip.verify.benchmark.curves import Curve, curve_of
 from partialslip.verify.benchmark.measured import Quantity, quantities
 from partialslip.verify.benchmark.problem import Problem, Target
 from partialslip.verify.benchmark.turning import event_by_event, slip_reverses
@@ -120,6 +121,21 @@ def frozen_parts(problem: Problem, progress: Callable[[str], None] = lambda _: N
         for key in "mn":
             targets[key] = replace(targets[key], uncertainty=max(apart, targets[key].uncertainty))
     return targets, result.regime
+
+
+def frozen_curve(problem: Problem) -> Curve:
+    """Tractions of ``problem`` as a curve, by which norms of errors are measured: exact, or by finite elements that are
+    far nearer than the best grade that the targets allow."""
+    way, scene = derivations(problem)[0], problem.scene
+    method, accuracy = "exact" if way.method == "exact" else "fem", _FINE if scene.material.alike else 10 * _FINE
+    found = run(scene.replace({**way.changes, "fem.accuracy": accuracy}), method)[method]
+    curve, off = curve_of(found, scene.profile.curvature.breaks), [0.0]
+    for key, target in problem.targets.items():
+        name, _, place = key.partition("@")
+        if place and name in ("p", "dq"):
+            value = getattr(curve.at(np.array([float(place) * problem.targets["a"].value])), name)[0]
+            off.append(abs(float(value) - target.value) / target.scale)
+    return replace(curve, error=float(f"{max(off):.1e}"))
 
 
 def covering(target: Target, words: str, off: float, unsure: float) -> Target:

@@ -8,12 +8,12 @@ import math
 from typing import NamedTuple
 
 from partialslip.tools.convergence import extrapolated, fitted_order, grid_convergence_index
-from partialslip.verify.benchmark.problem import Problem
+from partialslip.verify.benchmark.problem import Posed
 from partialslip.verify.benchmark.submission import Answer
 
 _CONSTANT = 0.01  # limit: largest deviation of the ratios of sizes, relative
 _HIGHEST = 8.0  # limit: order beyond which two values agree by chance
-NOT_MONOTONE, NO_RATIO, MISSING = "not monotone", "no constant ratio", "not given"
+NOT_MONOTONE, NO_RATIO, MISSING, FEW = "not monotone", "no constant ratio", "not given", "two meshes"
 
 
 class Climb(NamedTuple):
@@ -49,21 +49,23 @@ class Climb(NamedTuple):
     why: str = ""
 
 
-def climbs(problem: Problem, answer: Answer) -> list[Climb]:
+def climbs(problem: Posed, answer: Answer) -> list[Climb]:
     """Convergence of each target of ``problem`` on the ladder of the ``answer``; empty without a ladder."""
-    return [_climb(problem, answer, key) for key in problem.targets] if answer.ladder else []
+    return [_climb(problem, answer, key) for key in problem.measured] if answer.ladder else []
 
 
-def _climb(problem: Problem, answer: Answer, key: str) -> Climb:
-    target, last = problem.targets[key], answer.ladder[-3:]
+def _climb(problem: Posed, answer: Answer, key: str) -> Climb:
+    target, last = problem.measured[key], answer.ladder[-3:]
     values = [rung.values.get(key) for rung in last]
-    coarse, middle, fine = values
-    if coarse is None or middle is None or fine is None:
-        return Climb(key, fine, None, why=MISSING)
 
     def off(value: float) -> float:
         return abs(value - target.value) / target.scale
 
+    if len(values) < 3:
+        return Climb(key, values[-1], None if values[-1] is None else off(values[-1]), why=FEW)
+    coarse, middle, fine = values
+    if coarse is None or middle is None or fine is None:
+        return Climb(key, fine, None, why=MISSING)
     ratios = [before.h / after.h for before, after in itertools.pairwise(last)]
     if not (1 < ratios[1] < math.inf and abs(ratios[0] / ratios[1] - 1) <= _CONSTANT):
         return Climb(key, fine, off(fine), why=NO_RATIO)
@@ -78,7 +80,7 @@ def _climb(problem: Problem, answer: Answer, key: str) -> Climb:
     return Climb(key, fine, off(fine), order, limit, off(limit), index)
 
 
-def climb_rows(problem: Problem, answer: Answer, every: bool = False) -> list[tuple[str, ...]]:
+def climb_rows(problem: Posed, answer: Answer, every: bool = False) -> list[tuple[str, ...]]:
     """Rows of :data:`CLIMB_HEADS` for the ladder of the ``answer``: of ``every`` target, or of those that are not
     tractions at points."""
     return [_climb_row(climb) for climb in climbs(problem, answer) if every or "@" not in climb.key]

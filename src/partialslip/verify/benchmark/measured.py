@@ -9,12 +9,18 @@ import numpy as np
 
 from partialslip.result import Result
 from partialslip.result.peak import peak_error
+from partialslip.run.judge.measures import norm_errors
 from partialslip.scene import Scene
 from partialslip.scene.units import Dimension
+from partialslip.verify.benchmark.curves import read_curves
 from partialslip.verify.benchmark.problem import Problem
 from partialslip.verify.benchmark.submission import Answer
 
-GROUPS = ("contact", "stick", "tractions", "levels", "slip", "stress")  # levels: q1 and q2
+# tractions: the norms of p and q; points: p and dq at places; levels: q1 and q2
+GROUPS = ("contact", "stick", "tractions", "points", "levels", "slip", "stress")
+
+#: Groups that a problem must have answered in full, and that make the whole.
+HEADLINE = ("contact", "stick", "tractions")
 
 
 class Quantity(NamedTuple):
@@ -66,15 +72,34 @@ def quantities(scene: Scene, result: Result, places: tuple[float, ...], a: float
 
 
 def targeted(problem: Problem, result: Result) -> dict[str, Quantity]:
-    """Quantities of ``result`` that are targets of ``problem``, by key, at the places of the target's a."""
+    """Quantities of ``result`` that ``problem`` is measured by, by key, at the places of the target's a, and the norms
+    of p and q."""
     found = quantities(problem.scene, result, problem.places, problem.targets["a"].value)
-    return {key: found[key] for key in problem.targets if key in found}
+    found |= norms(problem, result)
+    return {key: found[key] for key in problem.measured if key in found}
+
+
+def norms(problem: Problem, result: Result) -> dict[str, Quantity]:
+    """Relative L2 errors of p and q of ``result`` over the contact (:func:`partialslip.run.judge.measures.norm_errors`
+    against the problem's curve); q where it is determined."""
+    curve, shear = read_curves().get(problem.number), result.regime != "ratchets" and "q" not in result.undetermined
+    if not curve:
+        return {}
+    keys = ("p", "q") if shear else ("p",)
+    off = norm_errors(result.traction, curve.traction, problem.scene.friction.f, keys)
+    return {
+        key: Quantity(error, "1", 1.0, "tractions", result.estimate.get(key, math.nan)) for key, error in off.items()
+    }
 
 
 def answer_of(problem: Problem, result: Result) -> Answer:
     """Answer to ``problem`` from a ``result``, with what it has of the targets."""
+    found = targeted(problem, result)
+    headline = {key for key, target in problem.measured.items() if target.group in HEADLINE}
+    own = {key: each.error for key, each in found.items() if key in headline and math.isfinite(each.error)}
     return Answer(
-        values={key: each.value for key, each in targeted(problem, result).items()},
+        values={key: each.value for key, each in found.items()},
+        estimate={key: float(f"{error:.2g}") for key, error in own.items()},
         cpu_s=result.cost.cpu_s,
         memory_mb=result.cost.peak_rss_mb,
     )
@@ -112,7 +137,10 @@ def _quantities(scene: Scene, result: Result, places: tuple[float, ...], a: floa
         if most > 0:
             yield "slip", Quantity(most, "m", most, "slip", own["q"])
             work, off = result.slip.dissipated, result.slip.dissipated_error
-            yield "dissipated", Quantity(work, "J/m", work, "slip", math.nan if off is None else off / work)
+            yield (
+                "dissipated",
+                Quantity(work, "J/m", work, "slip", off / work if off is not None and work else math.nan),
+            )
     if result.surface:
         off = peak_error(result)
         error = math.nan if off is None else off / p0

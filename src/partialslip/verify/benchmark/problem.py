@@ -5,7 +5,7 @@ import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Annotated, Any
+from typing import Annotated, Any, Protocol
 
 import msgspec
 
@@ -13,6 +13,7 @@ from partialslip.scene import Scene
 from partialslip.scene.reading import load_scene, parse_scene, scene_toml
 from partialslip.scene.units import Dimension
 from partialslip.tools.errors import InputError
+from partialslip.verify.benchmark.curves import read_curves
 
 _PACKAGE = "partialslip.verify.benchmark"
 _TARGETS = "targets.json"
@@ -74,6 +75,22 @@ class Frozen(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     targets: dict[str, dict[str, Target]]
 
 
+class Posed(Protocol):
+    """What answers are graded by: a problem, or a statement."""
+
+    @property
+    def number(self) -> str:
+        """Its number."""
+
+    @property
+    def title(self) -> str:
+        """Its title."""
+
+    @property
+    def measured(self) -> Mapping[str, Target]:
+        """What its answers are graded by, by key."""
+
+
 class Problem(msgspec.Struct, frozen=True):
     """A problem of the benchmark.
 
@@ -103,6 +120,20 @@ class Problem(msgspec.Struct, frozen=True):
     places: tuple[float, ...]
     regime: str
     targets: Mapping[str, Target]
+
+    @property
+    def measured(self) -> dict[str, Target]:
+        """What answers are graded by: ``targets``, those of tractions at points in a group of their own, and the norms
+        p and q, relative L2 errors over the contact as ``partialslip score`` measures them, which should be zero."""
+        norms, found, curve = dict[str, Target](), dict[str, Target](), read_curves().get(self.number)
+        off = curve.error if curve else 0.0
+        for key, target in self.targets.items():
+            name = {"p": "p", "dq": "q"}.get(key.partition("@")[0])
+            if name and "@" in key and (name not in norms or norms[name].uncertainty < target.uncertainty):
+                unsure, words = max(target.uncertainty, off), f"zero by definition; the curve is known as {key}"
+                norms[name] = Target(value=0.0, unit="1", scale=1.0, uncertainty=unsure, known=words, group="tractions")
+            found[key] = msgspec.structs.replace(target, group="points") if target.group == "tractions" else target
+        return found | norms
 
 
 @cache

@@ -17,7 +17,7 @@ import msgspec
 from partialslip.tools.output.page import template
 from partialslip.verify.benchmark.grade import BEYOND, LIMITS, NOT_GRADED, NOT_OFFERED, Graded, graded
 from partialslip.verify.benchmark.measured import GROUPS
-from partialslip.verify.benchmark.problem import EDITION, Problem, read_problems
+from partialslip.verify.benchmark.problem import EDITION, Posed, Problem, read_problems
 from partialslip.verify.benchmark.submission import Submission, check_apart
 
 _ORDER = (*LIMITS, BEYOND)
@@ -35,7 +35,7 @@ class Board(NamedTuple):
     words: tuple[int, ...]
 
 
-def grades(problems: Mapping[str, Problem], submission: Submission) -> dict[str, Graded]:
+def grades(problems: Mapping[str, Posed], submission: Submission) -> dict[str, Graded]:
     """Grades of a submission, by number of the problem."""
     return {
         number: graded(problems[number], answer) for number, answer in submission.answers.items() if number in problems

@@ -72,12 +72,13 @@ class Meta(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 class Rung(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One mesh of a ladder: size ``h`` of its elements along the contact, in a unit of the code's choice, and
-    ``values``, ``cpu_s`` and ``unknowns`` as in :class:`Answer`."""
+    ``values``, ``cpu_s``, ``unknowns`` and ``estimate`` as in :class:`Answer`."""
 
     h: Annotated[float, msgspec.Meta(gt=0)]
     values: dict[str, float | None]
     cpu_s: Annotated[float, msgspec.Meta(ge=0)] | None = None
     unknowns: Annotated[int, msgspec.Meta(ge=1)] | None = None
+    estimate: dict[str, Annotated[float, msgspec.Meta(ge=0)]] = {}
 
 
 class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -94,8 +95,11 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         Peak memory.
     note : str
         For the reader.
+    estimate : mapping of str to float
+        The code's own estimate of the errors, or the uncertainty of reading a value from tractions, by key, in the
+        scale of the target. It stands beside grades, and is in none.
     ladder : tuple of Rung
-        Three meshes or more, from coarse to fine; the values of the answer are those of the last one.
+        Two meshes or more, from coarse to fine; the values of the answer are those of the last one.
     """
 
     values: dict[str, float | None]
@@ -103,6 +107,7 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     unknowns: Annotated[int, msgspec.Meta(ge=1)] | None = None
     memory_mb: Annotated[float, msgspec.Meta(ge=0)] | None = None
     note: Annotated[str, msgspec.Meta(max_length=1000)] = ""
+    estimate: dict[str, Annotated[float, msgspec.Meta(ge=0)]] = {}
     ladder: tuple[Rung, ...] = ()
 
     def __post_init__(self) -> None:

@@ -4,6 +4,7 @@ A table has values at points. How far they can be read shows from every second r
 and with the odd rows, and the larger difference is the error. The ends of zones have the reader's own estimate, too.
 """
 
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -21,7 +22,7 @@ from partialslip.run.judge.reference import reference
 from partialslip.tools.errors import InputError
 from partialslip.verify.benchmark.grade import LIMITS, NOT_GRADED, NOT_OFFERED, graded
 from partialslip.verify.benchmark.measured import Quantity, targeted
-from partialslip.verify.benchmark.problem import Problem
+from partialslip.verify.benchmark.problem import Posed, Problem
 from partialslip.verify.benchmark.submission import Answer
 
 # limit: errors of reading: largest difference of a value from its table. Tables of exact tractions of 14 problems,
@@ -103,25 +104,27 @@ def _half(problem: Problem, samples: Samples, origin: str) -> dict[str, Quantity
 
 
 def completed(answer: Answer, table: TableValues) -> Answer:
-    """The ``answer`` with the values of the ``table`` that it leaves out. A null is no value, and stays."""
-    return replace(
-        answer, values={key: v for key, v in table.values.items() if key not in answer.values} | answer.values
-    )
+    """The ``answer`` with the values of the ``table`` that it leaves out, and how well these can be read. A null is no
+    value, and stays."""
+    read = {key: value for key, value in table.values.items() if key not in answer.values}
+    errors = {key: table.errors[key] for key in read if "@" not in key and math.isfinite(table.errors[key])}
+    known = {key: float(f"{error:.2g}") for key, error in errors.items()}
+    return replace(answer, values=read | answer.values, estimate=known | answer.estimate)
 
 
-def differences(problem: Problem, answer: Answer, table: TableValues, name: str) -> Iterator[str]:
+def differences(problem: Posed, answer: Answer, table: TableValues, name: str) -> Iterator[str]:
     """Lines for values of the ``answer`` that differ from the ``table`` of this ``name`` by more than reading it
     explains."""
     for key, value in answer.values.items():
         if value is None or key not in table.values:
             continue
-        target, seen, most = problem.targets[key], table.values[key], table.allowed(key)
+        target, seen, most = problem.measured[key], table.values[key], table.allowed(key)
         if not abs(value - seen) <= most * target.scale:
             within = f"{seen:.9g} within {most * target.scale:.1e} {target.unit}"
             yield f"values.{key} = {value:.9g}: must be {within}, as {name} has it, or left out"
 
 
-def remark(problem: Problem, answer: Answer, table: TableValues) -> str:
+def remark(problem: Posed, answer: Answer, table: TableValues) -> str:
     """Line about the ``table`` beside an ``answer``: what is read from it, and the grade that it gives without the
     values of the answer. A table that is worse than the values shows."""
     alone = graded(problem, Answer(dict(table.values))).overall

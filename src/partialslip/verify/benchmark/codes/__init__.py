@@ -1,6 +1,7 @@
 """Codes that answer the problems: an adapter each."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -21,6 +22,8 @@ from partialslip.verify.benchmark.measured import answer_of
 from partialslip.verify.benchmark.problem import Problem, read_problems
 from partialslip.verify.benchmark.submission import META, Answer, Meta, Rung, Submission, write_submission
 
+_RUNGS = 0.1, 0.05  # accuracy: sizes of elements of other codes, in a: twice the same mesh for all
+
 
 class Code(Protocol):
     """A code that answers problems."""
@@ -37,21 +40,53 @@ class Code(Protocol):
         """Solve ``scene``; None if the code does not offer it. A code that fails says why."""
 
 
+@dataclass(frozen=True)
+class Ladder:
+    """A code on meshes of ``sizes`` of elements along the contact, from coarse to fine, in a: one of the ``rungs``
+    each. Its answers are those of the finest."""
+
+    sizes: tuple[float, ...]
+    rungs: tuple[Code, ...]
+
+    @classmethod
+    def of(cls, code: Callable[[float], Code], *sizes: float) -> "Ladder":
+        """Ladder of a ``code`` by size."""
+        return cls(sizes, tuple(map(code, sizes)))
+
+    @property
+    def version(self) -> str | None:
+        """Version of the code; None if it is not installed."""
+        return self.rungs[-1].version
+
+    @property
+    def settings(self) -> str:
+        """Settings of the finest rung in words, and the sizes of the others."""
+        return f"{self.rungs[-1].settings}; coarser rungs of {', '.join(f'{size:g} a' for size in self.sizes[:-1])}"
+
+    def solve(self, scene: Scene) -> CodeOutcome | None:
+        """Solve ``scene`` on the finest mesh; None if the code does not offer it."""
+        return self.rungs[-1].solve(scene)
+
+
 CODES: dict[str, Code] = {
     "exact": Own("exact", {}),
     "march": Own("march", {"accuracy": 1e-4}),
     "fem-1e-3": Own("fem", {"accuracy": 1e-3}),
     "fem-1e-4": Own("fem", {"accuracy": 1e-4}),
     "fem-1e-5": Own("fem", {"accuracy": 1e-5}),
-    "fem-P1": Own("fem", {"order": 1}, (0.1, 0.05, 0.025, 0.0125)),
-    "fem-P2": Own("fem", {"order": 2}, (0.1, 0.05, 0.025)),
+    "fem-P1": Ladder.of(lambda size: Own("fem", {"order": 1, "size": size}), 0.1, 0.05, 0.025, 0.0125),
+    "fem-P2": Ladder.of(lambda size: Own("fem", {"order": 2, "size": size}), 0.1, 0.05, 0.025),
     "equivalent": Own("equivalent", {}),
-    "calculix-mortar": Calculix(0.05, False),
-    "calculix-penalty": Calculix(0.05, True),
-    "kratos": Kratos(0.1, 8),
-    "opensees": OpenSees(0.05, 8),
-    "getfem": GetFEM(0.05),
-    "getfem-graded": GetFEM(0.05, 0.003),
+    "calculix-mortar": Ladder.of(lambda size: Calculix(size, False), *_RUNGS),
+    "calculix-mortar-C3D8I": Ladder.of(lambda size: Calculix(size, False, element="C3D8I"), *_RUNGS),
+    "calculix-penalty": Ladder.of(lambda size: Calculix(size, True), *_RUNGS),
+    "calculix-penalty-30": Ladder.of(lambda size: Calculix(size, True, stick=30.0), *_RUNGS),
+    "kratos": Ladder.of(lambda size: Kratos(size, 8, tangent_factor=None), *_RUNGS),
+    "kratos-tangent-1": Ladder.of(lambda size: Kratos(size, 8), *_RUNGS),
+    "opensees": Ladder.of(lambda size: OpenSees(size, 8), *_RUNGS),
+    "opensees-bbar": Ladder.of(lambda size: OpenSees(size, 8, element="bbarQuad"), *_RUNGS),
+    "getfem": Ladder.of(GetFEM, *_RUNGS),
+    "getfem-graded": Ladder.of(lambda size: GetFEM(size, 0.06 * size), *_RUNGS),
 }
 
 
@@ -88,7 +123,7 @@ def code_answers(
         If there is no such code, or it is not installed.
     """
     version, code, machine = installed(name), CODES[name], made_now().machine
-    title = f"partialslip {name}" if isinstance(code, Own) else name
+    title = f"partialslip {name}" if isinstance(next(iter(rungs_of(code).values())), Own) else name
     meta = Meta(title, version, code.settings, f"{machine.processor}, {machine.system}")
     found = _kept(meta, problems, folder)
     if folder:
@@ -104,15 +139,26 @@ def code_answers(
 
 
 def _answered(code: Code, problem: Problem) -> Answer | None:
-    """Answer of ``code``, on its ladder of meshes if it has one; None if it does not offer the ``problem``."""
-    if not isinstance(code, Own) or not code.sizes:
-        solved = _code_outcome(code, problem.scene)
-        return _answer(problem, solved) if solved else None
-    rungs = [_code_outcome(each, problem.scene) for each in code.rungs]
-    found = [_answer(problem, each) for each in rungs if each]
-    if len(found) < len(rungs):
+    rungs = [_code_outcome(each, problem.scene) for each in rungs_of(code).values()]
+    return answer_on(code, problem, rungs)
+
+
+def rungs_of(code: Code) -> dict[float | None, Code]:
+    """Codes by size of the elements on the ladder of a ``code``; the code itself if it has no ladder."""
+    return dict(zip(code.sizes, code.rungs, strict=True)) if isinstance(code, Ladder) else {None: code}
+
+
+def answer_on(code: Code, problem: Problem, outcomes: Sequence[CodeOutcome | None]) -> Answer | None:
+    """Answer to ``problem`` of the ``outcomes`` of all :func:`rungs_of` a ``code``; None if it does not offer it."""
+    found = [_answer(problem, each) for each in outcomes if each]
+    if len(found) < len(outcomes):
         return None
-    ladder = (Rung(h, each.values, each.cpu_s, each.unknowns) for h, each in zip(code.sizes, found, strict=True))
+    if not isinstance(code, Ladder):
+        return found[0]
+    ladder = (
+        Rung(h, each.values, each.cpu_s, each.unknowns, each.estimate)
+        for h, each in zip(code.sizes, found, strict=True)
+    )
     return replace(found[-1], ladder=tuple(ladder))
 
 
@@ -126,8 +172,9 @@ def _code_outcome(code: Code, scene: Scene) -> CodeOutcome | None:
 
 
 def _answer(problem: Problem, solved: CodeOutcome) -> Answer:
-    values = answer_of(problem, solved.result).values if solved.result else {}
-    return Answer(values, solved.cpu_s, solved.unknowns, solved.memory_mb, one_line(solved.why))
+    found = answer_of(problem, solved.result) if solved.result else Answer({})
+    costs = {"cpu_s": solved.cpu_s, "unknowns": solved.unknowns, "memory_mb": solved.memory_mb}
+    return replace(found, **costs, note=one_line(solved.why))
 
 
 def _kept(meta: Meta, problems: Mapping[str, Problem], folder: Path | None) -> dict[str, Answer]:

@@ -21,11 +21,12 @@ HOST = Host(
 @dataclass(frozen=True)
 class Kratos:
     """Kratos with elements of ``size`` a and at least so many ``increments`` a step, or, if given, ``just`` so many
-    after pressing."""
+    after pressing. ``tangent_factor`` scales the stiffness of stick; None: as Kratos chooses, 0.025."""
 
     size: float
     increments: int
     just: int | None = None
+    tangent_factor: float | None = 1.0
 
     @property
     def version(self) -> str | None:
@@ -35,9 +36,12 @@ class Kratos:
     @property
     def settings(self) -> str:
         """Settings in words."""
-        kind = f"linear quadrilaterals of {self.size:g} a along the contact, mortar contact, augmented Lagrangian"
+        kind = f"SmallDisplacementElement2D4N of {self.size:g} a along the contact, mortar, augmented Lagrangian"
         increments = f"{self.just} increments a step" if self.just else or_twice(self.increments)
-        return f"{kind}, tangent_factor 1, {increments}, bodies {STIFFER:g} times stiffer"
+        factor = (
+            "Kratos' own tangent_factor" if self.tangent_factor is None else f"tangent_factor {self.tangent_factor:g}"
+        )
+        return f"{kind}, {factor}, {increments}, bodies {STIFFER:g} times stiffer"
 
     def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if there is no model, or the upper body would have to turn."""
@@ -48,4 +52,5 @@ class Kratos:
             made = modelled(scene, self.size, growth=GROWTH, stiffer=STIFFER)
         except InputError:
             return None
-        return patient(HOST, scene, made, self.increments, self.just)
+        more = {"tangent_factor": self.tangent_factor}
+        return patient(HOST, scene, made, self.increments, self.just, more)

@@ -21,12 +21,13 @@ _MATCH = 1e-6  # fixed: distance of nodes that face each other, in a, far below 
 @dataclass(frozen=True)
 class OpenSees:
     """OpenSees with elements of ``size`` a, at least so many ``increments`` a step, or, if given, ``just`` so many
-    after pressing, and ``sticking``, the stiffness of sticking, in E/a."""
+    after pressing, and ``sticking``, the stiffness of sticking, in E/a; ``element`` is quad or bbarQuad."""
 
     size: float
     increments: int
     just: int | None = None
     sticking: float = 1000.0
+    element: str = "quad"
 
     @property
     def version(self) -> str | None:
@@ -36,7 +37,7 @@ class OpenSees:
     @property
     def settings(self) -> str:
         """Settings in words."""
-        kind = f"linear quadrilaterals of {self.size:g} a along the contact, SimpleContact2D with multipliers"
+        kind = f"{self.element} of {self.size:g} a along the contact, SimpleContact2D with multipliers"
         increments = f"{self.just} increments a step" if self.just else f"at least {or_twice(self.increments)}"
         return f"{kind}, {self.sticking:g} E/a on stick, {increments}"
 
@@ -52,4 +53,5 @@ class OpenSees:
         lines = [sorted(part.mesh.points[part.contact, 0] / made.a) for part in made.parts]
         if len(lines[0]) != len(lines[1]) or max(abs(x - y) for x, y in zip(*lines, strict=True)) > _MATCH:
             return None
-        return patient(HOST, scene, made, self.increments, self.just, {"sticking": self.sticking})
+        more = {"sticking": self.sticking, "element": self.element}
+        return patient(HOST, scene, made, self.increments, self.just, more)

@@ -12,17 +12,10 @@ from partialslip.verify.benchmark.codes.process import CodeOutcome
 
 @dataclass(frozen=True)
 class Own:
-    """A ``method`` of partialslip with ``fem`` settings. With a ladder of ``sizes`` of elements, from coarse to fine,
-    in a, each of the ``rungs`` solves on one mesh, and the code itself on the finest."""
+    """A ``method`` of partialslip with ``fem`` settings."""
 
     method: str
     fem: Mapping[str, float | int]
-    sizes: tuple[float, ...] = ()
-
-    @property
-    def rungs(self) -> tuple["Own", ...]:
-        """Codes of one size each, as many as ``sizes``."""
-        return tuple(Own(self.method, {**self.fem, "size": size}) for size in self.sizes)
 
     @property
     def version(self) -> str | None:
@@ -32,14 +25,10 @@ class Own:
     @property
     def settings(self) -> str:
         """Settings in words."""
-        told = [f"{key} {value:g}" for key, value in self.fem.items()]
-        told += ["sizes " + ", ".join(f"{size:g} a" for size in self.sizes)] if self.sizes else []
-        return ", ".join(told)
+        return ", ".join(f"{key} {value:g}" for key, value in self.fem.items())
 
     def solve(self, scene: Scene) -> CodeOutcome | None:
         """Solve ``scene``; None if the method does not offer it."""
-        if self.sizes:
-            return self.rungs[-1].solve(scene)
         if scene.sized and self.method in ("exact", "march"):  # half-planes
             return None
         try:

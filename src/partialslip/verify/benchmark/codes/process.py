@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import threading
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -28,6 +29,8 @@ class CodeOutcome(NamedTuple):
         CPU seconds of the processes.
     memory_mb : float or None
         Peak memory.
+    inputs : mapping of str to bytes
+        Input files of the code by name; none for methods of partialslip.
     """
 
     result: Result | None
@@ -35,6 +38,7 @@ class CodeOutcome(NamedTuple):
     unknowns: int | None = None
     cpu_s: float | None = None
     memory_mb: float | None = None
+    inputs: Mapping[str, bytes] = {}
 
 
 class Ran(NamedTuple):

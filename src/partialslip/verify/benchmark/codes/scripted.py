@@ -83,12 +83,13 @@ def of_model(made: Model) -> dict[str, Any]:
 def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path) -> CodeOutcome:
     """Run the script of ``host`` with ``parameters`` in ``folder``, and read the tractions of ``scene``."""
     (folder / "parameters.json").write_text(json.dumps(parameters), "utf-8")
+    inputs = {each.name: each.read_bytes() for each in sorted(folder.iterdir())}
     python, _ = python_with(host.variable, host.version) or (sys.executable, "")
     with as_file(files("partialslip.verify.benchmark.codes") / "scripts" / host.script) as script:
         done = ran([python, str(script), "parameters.json"], folder)
 
     def failed(why: str, unknowns: int | None = None) -> CodeOutcome:
-        return CodeOutcome(None, why, unknowns, done.cpu_s, done.memory_mb)
+        return CodeOutcome(None, why, unknowns, done.cpu_s, done.memory_mb, inputs)
 
     if done.code is None:
         return failed(f"not finished within {LONGEST:g} s")
@@ -104,7 +105,7 @@ def solved(host: Host, scene: Scene, parameters: Mapping[str, Any], folder: Path
         result = scored(scene, read_tractions(folder / TABLE, scene), "", TABLE)
     except InputError as error:
         return failed(f"no results: {error}", unknowns)
-    return CodeOutcome(result, "", unknowns, done.cpu_s, done.memory_mb)
+    return CodeOutcome(result, "", unknowns, done.cpu_s, done.memory_mb, inputs)
 
 
 def patient(

@@ -9,7 +9,7 @@ it is not.
 PARAMETERS, in SI units: a; f; bodies lower and upper: points, quads, contact (edges), E, nu; held (nodes along x, and
 along y) of both; pull (forces on the lower body's nodes of a unit tension); strained (strains of a unit tension); steps
 (name, P, Q, sigma, increments, guided); points, numbers of the steps of load points 1 and 2; cycle, of those whose
-least and largest shear q1 and q2 are; table, the file to write.
+least and largest shear q1 and q2 are; tangent_factor, null for Kratos' own; table, the file to write.
 """
 
 import json
@@ -48,7 +48,6 @@ _SETTINGS = """{
             "assume_master_slave": {"0": ["slave"]},
             "contact_model_part": {"0": ["line"]},
             "friction_coefficients": {"0": 0.0},
-            "tangent_factor": 1.0,
             "contact_type": "Frictional"
         }
     }]},
@@ -65,6 +64,8 @@ class Analysis(StructuralMechanicsAnalysis):
         settings = KM.Parameters(_SETTINGS)
         contact = settings["processes"]["contact_process_list"][0]["Parameters"]
         contact["friction_coefficients"]["0"].SetDouble(told["f"])
+        if told["tangent_factor"] is not None:
+            contact.AddDouble("tangent_factor", told["tangent_factor"])
         if not told["f"]:
             contact["contact_type"].SetString("Frictionless")
             settings["solver_settings"]["contact_settings"]["mortar_type"].SetString("ALMContactFrictionless")

@@ -10,7 +10,8 @@ is no longer guided. Lengths are in a, and stresses in E of the lower body.
 PARAMETERS, in SI units: a; f; bodies lower and upper: points, quads, contact (edges), E, nu; held (nodes along x, and
 along y) of both; pull (forces on the lower body's nodes of a unit tension); strained (strains of a unit tension); steps
 (name, P, Q, sigma, increments, guided); points, numbers of the steps of load points 1 and 2; cycle, of those whose
-least and largest shear q1 and q2 are; sticking, the stiffness of sticking, E/a; table, the file to write.
+least and largest shear q1 and q2 are; element, quad or bbarQuad; sticking, the stiffness of sticking, E/a; table, the
+file to write.
 """
 
 import json
@@ -60,7 +61,8 @@ class TwoBodies:
         place, near = {int(node): k for k, node in enumerate(line)}, []
         for quad in quads.tolist():
             self.elements += 1
-            ops.element("quad", self.elements, *(first + node for node in quad), 1.0, "PlaneStrain", number)
+            kind = ("PlaneStrain", number) if self.told["element"] == "quad" else (number,)
+            ops.element(self.told["element"], self.elements, *(first + node for node in quad), 1.0, *kind)
             near += [(self.elements, corner, place[node]) for corner, node in enumerate(quad) if node in place]
         body["line"] = (first + line).tolist()
         return first, points[line, 0], near

@@ -1,0 +1,1 @@
+python benchmarks/peers/board.py --keep --codes calculix-mortar-C3D8I --problems 'PS-*'

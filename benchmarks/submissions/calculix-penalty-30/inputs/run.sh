@@ -1,0 +1,1 @@
+python benchmarks/peers/board.py --keep --codes calculix-penalty-30 --problems 'PS-*'

@@ -1,0 +1,1 @@
+python benchmarks/peers/board.py --keep --codes fem-1e-5 --problems 'PS-*'

@@ -1,0 +1,1 @@
+python benchmarks/peers/board.py --keep --codes fem-P1 --problems 'PS-*'

@@ -1,0 +1,1 @@
+python benchmarks/peers/board.py --keep --codes fem-P2 --problems 'PS-*'

@@ -1,0 +1,1 @@
+python benchmarks/peers/board.py --keep --codes march --problems 'PS-*'
