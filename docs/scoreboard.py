@@ -81,11 +81,11 @@ problems. "1 not offered": one problem with other values lacks values of the gro
 _OTHERS = """
 ## Codes on the same meshes
 
-The problems that are timed below, on the same meshes with elements of h along the contact, the same blocks and the same
-growth; a dash where a code was not run or gave no answer. Element, contact condition and stiffness are in the list of settings: first what a code does by default or
-its manual recommends, then another that we tried. A cell has the grade, the error that decides it, and how well this
-could be read from nodal values or how large the method says it is (+-), which is in no grade. Where +- is as large as
-the error, reading decides.
+The problems that are timed below, on the same meshes with elements of h along the contact, the same blocks and the
+same growth; a dash where a code was not run or gave no answer. Element, contact condition and stiffness are in the
+list of settings: first what a code does by default or its manual recommends, then another that we tried. A cell has
+the grade, the error that decides it, and how well this could be read from nodal values or how large the method says
+it is (+-), which is in no grade. Where +- is as large as the error, reading decides.
 
 {settings}
 
@@ -114,9 +114,9 @@ PS-02, and checksums of all decks. If a setting is not what you recommend, open 
 
 **Choices of ours**, not errors of a code:
 
-- *Element.* On one mesh of PS-02 C3D8I has less than half the errors of C3D8 in CalculiX (a from 7e-3 to 8e-4; in PS-23
-  q is worse), bbarQuad half of those of `quad` in OpenSees (q from 2.0e-2 to 0.9e-2). The first board had C3D8 and `quad`, which also lock at nu = 0.4999
-  (PS-14).
+- *Element.* On one mesh of PS-02 C3D8I has less than half the errors of C3D8 in CalculiX (a from 7e-3 to 8e-4; in
+  PS-23 q is worse), bbarQuad half of those of `quad` in OpenSees (q from 2.0e-2 to 0.9e-2). The first board had C3D8
+  and `quad`, which also lock at nu = 0.4999 (PS-14).
 - *Stiffness in stick.* 30 E/a instead of 100 E/a halves the error of q with CalculiX's penalties in PS-02 (0.05 a), and
   does not matter in PS-23; [other scenes](symptoms.md#which-stiffness).
 - *Multipliers.* GetFEM's p overshoots at the corners of the flat (PS-10, PS-11) with the linear multipliers that we
