@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from partialslip.halfplane.contact import contact, tilted_contact
+from partialslip.halfplane.layer import Layer
 from partialslip.halfplane.method import has_closed_form
 from partialslip.halfplane.method import solve as solve_exactly
 from partialslip.march.equivalent.data import HalfPlaneData, data_of, moments_of
@@ -81,6 +82,8 @@ def solve(
     closed = found.method == "exact"
     coarser = half_planes(scene, data_of(rig.coarser, scene, moments_of(rig, scene, found), found, shear=closed))
     shares = dict(found.shares) | estimate(rig, scene, seen, data, coarser, shear=closed)
+    if (layer := Layer.of(scene)) and (by_width := layer.left_out(found.a)):
+        shares["width"] = by_width
     errors = {key: sum(share.get(key, 0.0) for share in shares.values()) for key in _KEYS}
     undetermined, notes = dict(found.undetermined), found.notes
     if rig.terms.xy.any() and found.stick_centre is not None:  # not mirror images
@@ -95,7 +98,7 @@ def solve(
         found_off = stress_errors(scene, rig, stressed, errors["q"] + known)
         shares = shares | {key: {**shares.get(key, {}), "sigma_xx": error} for key, error in found_off.items()}
         errors["sigma_xx"] = sum(found_off.values())
-    levels = {key: errors["q"] for key in ("q1", "q2") if found.traction.values.levels and key not in undetermined}
+    levels = {key: scale * errors["q"] for key, scale in _levels(found).items() if key not in undetermined}
     return replace(
         found,
         method="equivalent",
@@ -109,6 +112,20 @@ def solve(
         stress_at=stressed.stress_at if stressed else None,
         state=None,
     )
+
+
+def _levels(found: Result) -> dict[str, float]:
+    """Norms of dq/2 over those of q1 and q2, at least 1: what errors of dq amount to in q1 and q2, where mean loads
+    take most of dq/2 away; empty without q1 and q2."""
+    of, x = found.traction.values, found.traction.x
+
+    def norm(q: Array) -> float:
+        return float(np.sqrt(np.trapezoid(q**2, x)))
+
+    half = norm(of.dq) / 2
+    return {
+        key: max(half / (norm(q) or half or 1.0), 1.0) for key, q in zip(("q1", "q2"), of.levels or (), strict=False)
+    }
 
 
 def _with_stresses(scene: Scene, rig: Rig, seen: Scene, closed: bool, progress: Callable[[str], None]) -> Result | None:
