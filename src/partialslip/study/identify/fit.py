@@ -8,8 +8,8 @@ the adhered shear traction has one sign. With turning points Q1 < Q2, compliance
 
 d0, C, drift, Q1 and Q2 are nuisance parameters. Both columns have noise: a row weighs 1/(s_d^2 + (C + G')^2 s_Q^2)
 (effective variance: Orear, 1982). With S(f) the least sum of squares at f, s^2 = S_min/(n - 6), and t of Student's
-distribution, the interval is S(f) <= S_min + tau t^2 s^2, and one-sided if it contains f = infinity, no slip. tau, the
-sum of the autocorrelations of the residuals, counts correlated rows as fewer.
+distribution, the interval is S(f) <= S_min + (3 t/2)^2 tau s^2, and one-sided if it contains f = infinity, no slip.
+tau, the sum of the autocorrelations of the residuals, counts correlated rows as fewer.
 """
 
 from dataclasses import dataclass, replace
@@ -43,6 +43,7 @@ _FLAT, _SLIDES = 0.02, 0.25  # limit: of the ranges of Q and displacement: a pla
 _BRANCH = 400  # display: points of a branch of the fitted loop
 _AS_GOOD = 1.02  # display: f over that of sliding that says no more
 _SEARCH = 1e-4  # accuracy: relative, of f
+_WIDER = 1.5  # accuracy: of intervals: noise of Q bends S(f), and tau is an estimate (measured: benchmarks/identify.py)
 _OUTLIER, _FAR = 8.0, 0.05  # limit: standard deviations, and range of the displacement, by which no row may be off
 _RATIO = 2.0  # display: upper over lower limit above which f is hardly told
 
@@ -238,7 +239,7 @@ def from_loop(scene: Scene, loop: MeasuredLoop) -> Identified:
     if correlated:  # an error of the model repeats in each cycle
         tau *= max(branches.halves / 2, 1)
         remarks += (f"The residuals are correlated: {tau:.0f} rows count as one.",)
-    unit = tau * variance * float(student.ppf((1 + LEVEL) / 2, max(len(rows) / tau - _PARAMETERS, 1))) ** 2
+    unit = _WIDER**2 * tau * variance * float(student.ppf((1 + LEVEL) / 2, max(len(rows) / tau - _PARAMETERS, 1))) ** 2
     low, high = fit.limits(found.S + unit)
     value = fit.friction(fit.best if low else 0.0)
     lowest, highest = min(fit.friction(high), value * (1 - _SEARCH)), max(fit.friction(low), value * (1 + _SEARCH))
