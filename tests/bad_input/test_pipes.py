@@ -150,9 +150,9 @@ OPENERS = {
     "ledger", "state",  # to write
     "origin", "cost",  # of the packages and of the operating system
     "mesher",  # meshes that are checked before
-    "reading", "book", "problem", "gradual_table",  # data of the package
+    "reading", "book", "problem", "gradual_table", "curves", "statements",  # data of the package
     "ending",  # the null device
-    "process", "calculix", "neutral", "moose", "run_getfem", "run_kratos", "run_opensees",  # in folders made here
+    "process", "calculix", "neutral", "moose", "run_getfem", "run_kratos", "run_opensees", "scripted",  # made here
 }  # fmt: skip
 
 

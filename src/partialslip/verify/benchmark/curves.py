@@ -23,7 +23,8 @@ _CUT = 1e-10  # accuracy: coefficients that are left out, in the largest
 
 class Curve(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Pressure at load point 2 and dq of a problem: ``breaks`` (s + 1,), m, and coefficients ``p`` and ``dq``, Pa, of
-    each of the s segments; ``error``, the largest difference from targets at places, in their scales."""
+    each of the s segments; ``error``, the largest difference from targets at places, in their scales, and from the
+    tractions that it stands for, in their norms."""
 
     breaks: tuple[float, ...]
     p: tuple[tuple[float, ...], ...]

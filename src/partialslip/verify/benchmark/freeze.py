@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from partialslip.result import Result
 from partialslip.run import run
-from partialslip.run.judge.measures import means
+from partialslip.run.judge.measures import means, norm_errors
 from partialslip.run.judge.reference import reference
 from partialslip.scene import Hertz
 from partialslip.tools.arrays import Array
@@ -135,6 +135,9 @@ def frozen_curve(problem: Problem) -> Curve:
         if place and name in ("p", "dq"):
             value = getattr(curve.at(np.array([float(place) * problem.targets["a"].value])), name)[0]
             off.append(abs(float(value) - target.value) / target.scale)
+    # the series itself, where shear is steep beside the contact's ends
+    keys = ("p", "q") if np.any(found.traction.dq) else ("p",)
+    off += norm_errors(found.traction, curve.traction, scene.friction.f, keys).values()
     return replace(curve, error=float(f"{max(off):.1e}"))
 
 
