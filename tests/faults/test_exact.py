@@ -7,7 +7,7 @@ import pytest
 import scipy.special
 
 import partialslip
-from partialslip.halfplane import contact, loading, steady
+from partialslip.halfplane import contact, loading, proportional, steady
 from partialslip.halfplane import traction as exact_traction
 from partialslip.halfplane.hertz import HertzShape
 from partialslip.run import compared
@@ -20,7 +20,7 @@ LARGE = "hertz-large-tension"
 def closed_form(scene):
     """Half a cycle in one step; where the zone of a fault lets slip turn round, exact goes another way."""
     load = scene.load
-    return loading.loading(contact(scene), scene.friction.f, load.dQ, load.dsigma, bound=2)
+    return proportional.loading(contact(scene), scene.friction.f, load.dQ, load.dsigma, bound=2)
 
 
 @pytest.mark.fault
