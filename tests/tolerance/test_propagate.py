@@ -183,3 +183,12 @@ def test_surfaces():
     assert np.sqrt((apart**2).mean()) < 0.02
     parts = shares(at, function(at)[:, 0])
     assert parts == pytest.approx([(1 / 3) / (1 / 3 + 16 / 45), (16 / 45) / (1 / 3 + 16 / 45), 0], abs=0.02)
+
+
+def test_strips_whose_heights_have_tolerances_are_equal_no_more():
+    """Exact would take half-planes for them."""
+    body = {"height": 1e-3, "width": 40e-3, "support": "roller"}
+    with_bodies = [f"bodies.{each}.{key}={value!r}" for each in ("upper", "lower") for key, value in body.items()]
+    keys = "friction.f", "bodies.upper.height"
+    scenes = [load_scene("hertz-shear", [*with_bodies, f'tolerance.{key}="1 %"']) for key in keys]
+    assert [module.method_of(scene) for scene in scenes] == ["exact", "equivalent"]
