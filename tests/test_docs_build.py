@@ -47,7 +47,8 @@ def test_every_page_is_built(built):
     assert len(pages) > 20
     assert [name for name in pages if not (built / name).with_suffix(".html").exists()] == []
     contents = page(built, "index")
-    assert [name for name in pages if name.name != "index" and f'href="{name.as_posix()}.html"' not in contents] == []
+    listed = [name for name in pages if name.name != "index" and name.parts[0] != "upstream"]  # drafts of reports
+    assert [name for name in listed if f'href="{name.as_posix()}.html"' not in contents] == []
 
 
 @pytest.mark.slow
