@@ -62,14 +62,20 @@ def test_f_and_stiffness_are_in_their_intervals(seed):
 
 @pytest.mark.slow
 def test_f_is_in_its_interval_in_95_of_100_loops():
-    """40 loops, every eighth of them without slip to speak of. With a chance of 0.95 each, 35 or fewer have 1.4 %."""
-    random, inside = np.random.default_rng(7), 0
+    """40 loops, every eighth of them without slip to speak of. With a chance of 0.95 each, 35 or fewer have 1.4 %. A
+    refusal tells nothing wrong, but must be rare."""
+    random, inside, refused = np.random.default_rng(7), 0, 0
     for number in range(40):
         loop = made_by.loop(random, used=0.03 if number % 8 == 7 else None)
-        of = found(loop)
+        try:
+            of = found(loop)
+        except InputError:
+            refused += 1
+            continue
         inside += of.f.low <= loop.f <= of.f.high
-        assert number % 8 != 7 or of.f.one_sided
-    assert inside >= 36
+        assert number % 8 != 7 or of.f.one_sided or of.f.high > 2 * of.f.low  # hardly told
+    assert refused <= 2
+    assert inside >= 36 - refused
 
 
 @pytest.mark.parametrize("more", [{"count": 20, "cycles": 1.0, "begin": 0.5}, {"used": 0.995}, {"used": 0.2}])
