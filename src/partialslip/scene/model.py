@@ -325,13 +325,7 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         side."""
         if self.bodies.lower is None or not self.bodies.lower.right_share:
             return self
-        sigma = self.at_right_grip(*zip(*self.load.points, strict=True))
-        lower = msgspec.structs.replace(self.bodies.lower, right_grip=None)
-        return msgspec.structs.replace(
-            self,
-            load=msgspec.structs.replace(self.load, sigma=tuple(sigma.tolist())),
-            bodies=msgspec.structs.replace(self.bodies, lower=lower),
-        )
+        return self._gripped(None, self.at_right_grip(*zip(*self.load.points, strict=True)).tolist())
 
     @property
     def evenly_gripped(self) -> "Scene":
@@ -339,12 +333,15 @@ class Scene(Notebook, Table, frozen=True, kw_only=True):
         scene without strips as it is."""
         if not self.strips or not self.strips.skew:
             return self
-        sigma = tuple(sigma + self.strips.skew * Q for Q, sigma in self.load.points)
+        return self._gripped(0.5, [sigma + self.strips.skew * Q for Q, sigma in self.load.points])
+
+    def _gripped(self, share: float | None, sigma: Sequence[float]) -> "Scene":
+        """The scene with the ``share`` of Q on the right side of the lower body, and ``sigma`` at the load points."""
         assert self.bodies.lower
-        lower = msgspec.structs.replace(self.bodies.lower, right_grip=0.5)
+        lower = msgspec.structs.replace(self.bodies.lower, right_grip=share)
         return msgspec.structs.replace(
             self,
-            load=msgspec.structs.replace(self.load, sigma=sigma),
+            load=msgspec.structs.replace(self.load, sigma=tuple(sigma)),
             bodies=msgspec.structs.replace(self.bodies, lower=lower),
         )
 

@@ -62,8 +62,10 @@ def solve_sized(job: Job, keep: "Kept | None" = None) -> Sized:
     try:
         solved = run(scene, "fem", subsurface=stresses, keep=keep)
         found = {name: run(of, method, subsurface=stresses)[method] for name, (of, method) in exact.items()}
-        all_ = {FEM: solved["fem"]} | {name: _with_stresses(exact[name][0], each) for name, each in found.items()}
-        spots = {name: hot_spots(scene, result) for name, result in all_.items()} if stresses else {}
+        spots = {}
+        if stresses:
+            stressed = {name: _with_stresses(exact[name][0], each) for name, each in found.items()}
+            spots = {name: hot_spots(scene, each) for name, each in ({FEM: solved["fem"]} | stressed).items()}
     except InputError as error:
         return Sized(labels=job.labels, error=str(error))
     plain, strips = (
