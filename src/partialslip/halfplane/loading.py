@@ -30,6 +30,11 @@ class Loading(Change):
     """Change of shear traction and slip due to one proportional change of the loads, in a single step."""
 
     @property
+    def loads(self) -> tuple[float, float]:
+        """Qf and sf with their signs."""
+        return self.turn * self.Qf, self.turn * self.mirror * self.sf
+
+    @property
     def signs(self) -> tuple[int, int]:
         """Signs of the change of traction in the left and the right slip zone."""
         left, right = (self.turn * int(self.zone.s), self.turn)[:: self.mirror]

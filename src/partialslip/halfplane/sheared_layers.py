@@ -88,18 +88,21 @@ class InLayers(Loading):
     def certificate(self) -> dict[str, float]:
         """Residuals of the loads: ``tension`` in f p0, or relative if sf > 1, and ``shear`` in 2 f P."""
         _, Qf, sf = _solved(self.contact, self.below)
-        signs = self.turn, self.turn * self.mirror
-        off = abs(Qf - signs[0] * self.Qf), abs(sf - signs[1] * self.sf) / max(self.sf, 1.0)
+        own_Qf, own_sf = self.loads
+        off = abs(Qf - own_Qf), abs(sf - own_sf) / max(self.sf, 1.0)
         own = self.below.certificate
         return {"tension": off[1] + own["tension"], "shear": off[0] + own["shear"]}
+
+    @property
+    def _under_shear_alone(self) -> bool:
+        """Whether the stick zone only shrinks and the traction in it only grows, by symmetry."""
+        return self.sf == 0 and self.shape.even
 
     @cached_property
     def _stages(self) -> list[Loading]:
         """The change at equal stages of the loads."""
-        contact, unit = self.contact, self.bound * self.contact.p0
-        dQ = self.turn * self.Qf * self.bound * contact.P
-        dsigma = self.turn * self.mirror * self.sf * unit / 2
-        near = np.array([self.below.turn * self.below.Qf, self.below.turn * self.below.mirror * self.below.sf])
+        contact, (Qf, sf), near = self.contact, self.loads, np.array(self.below.loads)
+        dQ, dsigma = Qf * self.bound * contact.P, sf * self.bound * contact.p0 / 2
         return [
             *(
                 in_layers(contact, 1.0, each * dQ, each * dsigma, bound=self.bound, near=each * near)
@@ -112,7 +115,7 @@ class InLayers(Loading):
     def turns_round(self) -> bool:
         """Whether slip reverses at stages of gradual loads: a stick zone does not shrink, or points that slip are
         pushed back."""
-        if self.sf == 0 and self.shape.even:
+        if self._under_shear_alone:
             return False
         before = None
         for stage in self._stages:
@@ -147,8 +150,7 @@ class InLayers(Loading):
         e, c = self._middle
         x = e + c * POINTS
         half, p = self.traction(x) / 2, self.shape.pressure(x)
-        # under shear alone the traction where points stick only grows
-        stages = [self] if self.sf == 0 and self.shape.even else self._stages
+        stages = [self] if self._under_shear_alone else self._stages
         most = np.max([np.abs(stage.traction(x) - half) for stage in stages], axis=0)
         weights = c * np.pi / (2 * COUNT + 1) * np.sqrt(1 - POINTS**2)
         return max(float(weights @ (p - most)) * 2 / math.pi, 0.0)
@@ -241,7 +243,7 @@ def _solved(pressed: Contact, below: Loading) -> tuple[Array, float, float]:
     own = TO_SERIES @ layer.smooth("shear", at, inner, a * c * FORCES).T
     series = np.linalg.solve(np.eye(COUNT) + own[1:], given[1:])
     first = float(given[0] - own[0] @ series)
-    Qf, sf = below.turn * below.Qf, below.turn * below.mirror * below.sf
+    Qf, sf = below.loads
     return np.append(first, series), Qf - c * float(series[0]), sf - 8 * first
 
 

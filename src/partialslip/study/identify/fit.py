@@ -23,9 +23,10 @@ from scipy.stats import t as student
 
 from partialslip.halfplane.contact import Contact, contact
 from partialslip.halfplane.loop import hysteresis
+from partialslip.run.tolerance import COVERAGE
 from partialslip.scene import Scene
 from partialslip.study.identify.half_planes import half_planes
-from partialslip.study.identify.interval import LEVEL, Interval
+from partialslip.study.identify.interval import Interval
 from partialslip.study.identify.measured_loop import Branches, MeasuredLoop, branches_of
 from partialslip.tools.arrays import Array, Indices
 from partialslip.tools.errors import InputError
@@ -239,7 +240,9 @@ def from_loop(scene: Scene, loop: MeasuredLoop) -> Identified:
     if correlated:  # an error of the model repeats in each cycle
         tau *= max(branches.halves / 2, 1)
         remarks += (f"The residuals are correlated: {tau:.0f} rows count as one.",)
-    unit = _WIDER**2 * tau * variance * float(student.ppf((1 + LEVEL) / 2, max(len(rows) / tau - _PARAMETERS, 1))) ** 2
+    unit = (
+        _WIDER**2 * tau * variance * float(student.ppf((1 + COVERAGE) / 2, max(len(rows) / tau - _PARAMETERS, 1))) ** 2
+    )
     low, high = fit.limits(found.S + unit)
     value = fit.friction(fit.best if low else 0.0)
     lowest, highest = min(fit.friction(high), value * (1 - _SEARCH)), max(fit.friction(low), value * (1 + _SEARCH))

@@ -3,8 +3,6 @@
 import msgspec
 import numpy as np
 
-LEVEL = 0.95  # fixed: of the intervals
-
 
 class Interval(msgspec.Struct, frozen=True):
     """A ``value`` and the ends of its interval of 95 %, ``low`` and ``high``: infinite where the data give no end, NaN
