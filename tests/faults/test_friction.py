@@ -103,7 +103,7 @@ def test_history_not_committed_between_steps(monkeypatch, sound, red):
         first, second = (alone[end].q2 for end in path.ends)
         return replace(true_march(C, x, normal, f, path), q1=first, q2=second)
 
-    scene = sound(LARGE, *MEAN)
+    scene = sound(LARGE, "load.Q=[-62831.9, 125664]", "load.sigma=[-1e8, 7e8]")  # shakes down in a few cycles
     monkeypatch.setattr(coulomb_constant_pressure, "march", forgetful)
     red.comparison("q", scene)
 

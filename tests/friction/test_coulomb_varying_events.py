@@ -138,6 +138,9 @@ def test_rounding_of_small_elements_is_corrected_on_the_way():
     assert (found.m / found.a, found.n / found.a) == pytest.approx((-0.706828, 0.920919), abs=5e-4)
 
 
+FINER = 4e-3  # estimate of m and n of the narrow contact at an accuracy of 2e-5, a
+
+
 def off_and_known(accuracy=2e-5):
     """Errors of m and n of :func:`narrow` over their estimates, and the larger estimate. The ends are those by march at
     an accuracy of 1e-4, to 3e-5 a."""
@@ -156,15 +159,16 @@ def test_ends_that_wander_at_varying_pressure():
     assert known < 2e-3
     times, finer = off_and_known()
     assert times < 1
-    assert finer < 4e-3
+    assert finer < FINER
 
 
 @pytest.mark.slow
 @pytest.mark.fault
 def test_ends_at_varying_pressure_that_do_not_wander(monkeypatch):
-    """Deliberate fault: where the pressure varies, meshes may grow faster beside the ends although slip turns round."""
+    """Deliberate fault: where the pressure varies, meshes may grow faster beside the ends although slip turns round.
+    Estimates are then 0.15 a on some processors, 85 a on others."""
     monkeypatch.setattr(MeshSolution, "wanders", False)
-    assert off_and_known()[1] > 1
+    assert off_and_known()[1] > 10 * FINER
 
 
 @pytest.mark.slow
