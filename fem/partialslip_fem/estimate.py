@@ -79,8 +79,9 @@ _KINK = 0.03  # accuracy: L2 error of q at a kink, in its strength times the ele
 _TURNED_KINK = 0.1
 _STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times element size / gap
 _SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength times the shift
-# accuracy: of the change: least error where the gap's curvature jumps within elements (measured on tables)
-_OF_BROKEN = 0.4
+# accuracy: of the change: least errors of ends and of tractions where the gap's curvature jumps within elements. There
+# both orders converge alike, and the error of a traction is about the change.
+_OF_BROKEN, _OF_BROKEN_TRACTION = 0.4, 1.5
 # accuracy: L2 error of p where the gap's curvature jumps at a vertex, in the factor of x log|x| in p times the element
 # size^1.5, by order: twice the largest in runs of random flats and tables, where more than the bends adds to it
 # (benchmarks/accuracy.py bends has the bends alone)
@@ -113,7 +114,8 @@ def smooth_errors(
         for key, change in changes.items()
     }
     if _within_elements(solution, breaks):
-        errors = {key: max(error, _OF_BROKEN * changes[key]) for key, error in errors.items()}
+        parts = dict.fromkeys(END_KEYS, _OF_BROKEN) | dict.fromkeys(("p", *_SHEARS), _OF_BROKEN_TRACTION)
+        errors = {key: max(error, parts[key] * changes[key]) for key, error in errors.items()}
     if solution.wanders:
         turns = bool(solution.history and solution.history.turns)
         parts = dict.fromkeys(("m", "n"), _OF_TURNED if turns else 1.0) | dict.fromkeys(_SHEARS, 1.0)
