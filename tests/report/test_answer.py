@@ -45,6 +45,15 @@ def test_the_answer_of_the_exact_method():
     assert answer.answer_heading(ran({"exact": EXACT})) == "exact: small tension"
 
 
+def test_half_planes_in_the_place_of_finite_bodies_are_named():
+    body = {"height": 0.5e-3, "width": 8e-3, "support": "roller"}
+    thinner = body | {"height": 0.4e-3}
+    scene = load_scene("fretting-aluminium")
+    equal, unequal = (scene.replace({"bodies.upper": body, "bodies.lower": each}) for each in (body, thinner))
+    headings = [answer.answer_heading(run(each.replace({"load.sigma": [0, 0]}), "exact")) for each in (equal, unequal)]
+    assert headings == ["exact: small tension", "half-planes (exact): small tension"]
+
+
 def test_what_the_reference_does_not_know_comes_from_another_method():
     exact = replace(EXACT, traction=traction(levels=False), undetermined={"q1": "why not", "q2": "why not"})
     found = dict(answer.answers(ran({"exact": exact, "fem": result(estimate={"q1": 1e-4})})))

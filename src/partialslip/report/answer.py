@@ -87,10 +87,15 @@ class Known(NamedTuple):
     method: str
 
 
+def whose(run: Run, name: str) -> str:
+    """Return whose values those of method ``name`` of ``run`` are: half-planes are named where bodies are finite."""
+    return f"half-planes ({name})" if run.scene.sized and name in HALF_PLANES else name
+
+
 def answer_heading(run: Run) -> str:
     """Return the method that answers, the regime, and why the answer is not known to hold, in one line."""
     name, unknown = run.answering, reference(run.scene).unknown
-    return f"{name}: {run.results[name].regime}" + (f"; {unknown['m']}" if unknown else "")
+    return f"{whose(run, name)}: {run.results[name].regime}" + (f"; {unknown['m']}" if unknown else "")
 
 
 def answers(run: Run) -> list[tuple[str, str]]:

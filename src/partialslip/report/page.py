@@ -73,7 +73,7 @@ def run_page(run: Run, made: Made, sections: Sequence[Section] = ()) -> str:
         answer=answer,
         figure=traction_svg(run, errors=False),
         errors=error_svg(run),
-        amounts=amounts({rows.whose(run, name): each for name, each in run.results.items()}, run.scene.units),
+        amounts=amounts({answer.whose(run, name): each for name, each in run.results.items()}, run.scene.units),
         levels=levels_svg(run),
         sections=[*([tolerance_section(run)] if run.tolerance else []), *sections],
         plates={"figure": loop_svg(run), "rows": loop_rows(run), "remark": loop_remark(run)},

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import msgspec
 import numpy as np
 
-from partialslip.report.answer import HALF_PLANES, NOT_ESTIMATED, dissipated, scale, with_error
+from partialslip.report.answer import HALF_PLANES, NOT_ESTIMATED, dissipated, scale, whose, with_error
 from partialslip.result import Cost, Result
 from partialslip.run import Run
 from partialslip.run.judge import BARS, NO_BAR, Comparison, Outcome, Verdict
@@ -64,11 +64,6 @@ def shown_half_planes(run: Run) -> bool:
 def scored(run: Run) -> bool:
     """Return whether ``run`` compares results of another code."""
     return any(result.method not in METHODS for result in run.results.values())
-
-
-def whose(run: Run, name: str) -> str:
-    """Return whose values those of method ``name`` of ``run`` are: half-planes are named where bodies are finite."""
-    return f"half-planes ({name})" if run.scene.sized and name in HALF_PLANES else name
 
 
 def error_headings(run: Run, name: str) -> list[str]:

@@ -3,9 +3,8 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from partialslip.report.answer import first_knowing, scale, with_error
+from partialslip.report.answer import first_knowing, scale, whose, with_error
 from partialslip.report.page import Section
-from partialslip.report.rows import whose
 from partialslip.result import Result
 from partialslip.run import Run
 from partialslip.scene import Fatigue
