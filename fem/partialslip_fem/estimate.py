@@ -81,7 +81,7 @@ _STEEP = 0.3  # accuracy: the same at ends of a narrow slip zone, also times ele
 _SHIFT = 1.5  # accuracy: L2 error of q due to a shifted kink, in its strength times the shift
 # accuracy: of the change: least errors of ends and of tractions where the gap's curvature jumps within elements. There
 # both orders converge alike, and the error of a traction is about the change.
-_OF_BROKEN, _OF_BROKEN_TRACTION = 0.4, 1.5
+_OF_BROKEN, _OF_BROKEN_TRACTION = 0.4, 0.8
 # accuracy: L2 error of p where the gap's curvature jumps at a vertex, in the factor of x log|x| in p times the element
 # size^1.5, by order: twice the largest in runs of random flats and tables, where more than the bends adds to it
 # (benchmarks/accuracy.py bends has the bends alone)

@@ -73,8 +73,9 @@ def ratios(scene):
 
 
 @pytest.mark.slow
-def test_ends_of_a_coarse_table_are_within_their_estimates():
-    assert max(ratios(table())) < 1
+def test_ends_of_a_coarse_table_are_within_a_tenth_of_their_estimates():
+    """Elements are as small as the tractions call for, and ends converge faster."""
+    assert max(ratios(table())) < 0.1
 
 
 @pytest.mark.slow
@@ -82,4 +83,4 @@ def test_ends_of_a_coarse_table_are_within_their_estimates():
 def test_interpolated_gaps_would_be_seen(monkeypatch):
     """Deliberate fault: the gap at the nodes; estimates that go by the order know nothing of its error."""
     monkeypatch.setattr(solving, "projected", lambda line, gap, _: gap(line.x))
-    assert max(ratios(table())) > 1
+    assert max(ratios(table())) > 0.1
